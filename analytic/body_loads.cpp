@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 
+#include "bentaxis/analytic/constant_speed.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/pump/validate.h"
 #include "closed_form/reactions.h"
@@ -44,8 +45,9 @@ struct BodyLoads::Implementation {
                  std::vector<BodyLoad>& on) const;
   void add_shaft(const Instant& instant, const std::vector<double>& row,
                  std::vector<BodyLoad>& on) const;
-  void add_gear(const Instant& instant, const std::vector<double>& row, const TeethAction& acting,
-                std::vector<BodyLoad>& block, std::vector<BodyLoad>& shaft) const;
+  void add_transfer(const Instant& instant, const std::vector<double>& row,
+                    const TeethAction& acting, std::vector<BodyLoad>& block,
+                    std::vector<BodyLoad>& shaft) const;
   double centre_of_mass() const;
   Inertia piston_inertia(const Vector& axis, const Vector& axis_rate, const Vector& joint,
                          const Vector& axis_acceleration) const;
@@ -166,15 +168,35 @@ void BodyLoads::Implementation::add_pistons(const Instant& instant, const State&
     add(block, "block", name, "Fpf", ring, ForceKind::applied, b, -1.0 * rub);
     add(block, "block", "oil", "Ftp", ring, ForceKind::applied, b,
         turned({0, 0, pump.block.bottom_area * pressure}));
+    if (at.has(Quantity::Rw)) {
+      const Vector d = placed(m.joint + p.wall.along * m.axis);
+      const Vector rw = turned({row[at.Rw(k, 0)], row[at.Rw(k, 1)], 0});
+      add(pistons, on, "block", "Rw", "D" + number, ForceKind::reaction, d, rw);
+      add(block, "block", name, "Rw", "D" + number, ForceKind::reaction, d, -1.0 * rw);
+    }
     add(shaft, "shaft", name, "Rs", "A" + number, ForceKind::reaction, a, -1.0 * rs);
   }
 }
 
-void BodyLoads::Implementation::add_gear(const Instant& instant, const std::vector<double>& row,
-                                         const TeethAction& acting, std::vector<BodyLoad>& block,
-                                         std::vector<BodyLoad>& shaft) const {
+void BodyLoads::Implementation::add_transfer(const Instant& instant, const std::vector<double>& row,
+                                             const TeethAction& acting,
+                                             std::vector<BodyLoad>& block,
+                                             std::vector<BodyLoad>& shaft) const {
   const closed_form::GearNumbers<double>& gear = prepared.numbers.gear;
   const ChannelLayout& at = model.layout();
+  if (at.has(Quantity::TcsJoint)) {
+    const Vector couple = turned({row[at.TcsJoint(0)], row[at.TcsJoint(1)], row[at.TcsJoint(2)]});
+    add(block, "block", "shaft", "Tcs", "about O2", ForceKind::reaction, o2(), kNone, couple);
+    add(shaft, "shaft", "block", "Tcs", "about O2", ForceKind::reaction, o2(), kNone,
+        -1.0 * couple);
+    return;
+  }
+  if (at.has(Quantity::Tb)) {
+    if (is_computed(row[at.Tb()]))
+      add(block, "block", "outside", "Tb", "about z2", ForceKind::reaction, o2(), kNone,
+          turned({0, 0, row[at.Tb()]}));
+    return;
+  }
   if (prepared.imposed) {
     add(block, "block", "imposed motion", "Tcs", "about z2", ForceKind::reaction, o2(), kNone,
         turned({0, 0, row[at.Tcs()]}));
@@ -262,16 +284,19 @@ void BodyLoads::Implementation::add_shaft(const Instant& instant, const std::vec
       {0, 0, -pump.shaft.axial_inertia * instant.shaft.acceleration});
 }
 
-std::vector<BodyLoad> BodyLoads::Implementation::all(const Instant& instant,
+std::vector<BodyLoad> BodyLoads::Implementation::all(const Instant& given,
                                                      const std::vector<double>& row,
                                                      const TeethAction& acting) const {
+  Instant instant = given;
+  if (pump.transfer.is_joint()) instant.block = model.block_motion(given.shaft);
   std::vector<BodyLoad> loads;
   std::vector<BodyLoad> block;
   std::vector<BodyLoad> shaft;
-  with_state<double>(
-      instant, [&](const auto& state) { add_pistons(instant, state, row, loads, block, shaft); });
-  // The gear's stand behind those of the pistons on either body.
-  add_gear(instant, row, acting, block, shaft);
+  with_state<double>(prepared.transfer, prepared.numbers, instant, [&](const auto& state) {
+    add_pistons(instant, state, row, loads, block, shaft);
+  });
+  // The transfer's stand behind those of the pistons on either body.
+  add_transfer(instant, row, acting, block, shaft);
   add_block(instant, row, block);
   add_shaft(instant, row, shaft);
   loads.insert(loads.end(), block.begin(), block.end());
@@ -298,15 +323,16 @@ std::vector<BodyLoad> BodyLoads::of_row(const Instant& instant, const std::vecto
 
 namespace {
 
-template <class Rows>
+// @param place  makes of an instant the one that is evaluated
+template <class Rows, class Place>
 BodyLoadTable run_rows(const Case& the_case, const Assumptions& assumptions, const Rows& rows,
-                       std::size_t count, const Progress& progress) {
+                       std::size_t count, const Place& place, const Progress& progress) {
   BodyLoads loads(validate(the_case).pump, assumptions);
   BodyLoadTable table;
   Instant instant;
   for (std::size_t row = 0; row < count; ++row) {
     rows.instant(row, instant);
-    table.append(loads.evaluate(instant));
+    table.append(loads.evaluate(place(instant)));
     if (progress) progress(static_cast<double>(row + 1) / static_cast<double>(count));
   }
   return table;
@@ -316,12 +342,18 @@ BodyLoadTable run_rows(const Case& the_case, const Assumptions& assumptions, con
 
 BodyLoadTable run_body_loads(const Case& the_case, const Assumptions& assumptions,
                              const Samples& samples, const Progress& progress) {
-  return run_rows(the_case, assumptions, samples, samples.theta_deg.size(), progress);
+  const Model model(the_case.pump, assumptions);
+  PlacedSamples placed(model, the_case);
+  return run_rows(
+      the_case, assumptions, samples, samples.theta_deg.size(),
+      [&](const Instant& instant) -> const Instant& { return placed.at(instant); }, progress);
 }
 
 BodyLoadTable run_body_loads(const Case& the_case, const Assumptions& assumptions,
                              const States& states, const Progress& progress) {
-  return run_rows(the_case, assumptions, states, states.rows(), progress);
+  return run_rows(
+      the_case, assumptions, states, states.rows(),
+      [](const Instant& instant) -> const Instant& { return instant; }, progress);
 }
 
 }  // namespace bentaxis::analytic

@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "bentaxis/analytic/constant_speed.h"
 #include "bentaxis/analytic/model.h"
 #include "closed_form/reactions.h"
 #include "prepared.h"
@@ -39,7 +40,7 @@ template <class State>
 closed_form::Vec3<double> play(const closed_form::Pump<double>& p, const State& state, double s,
                                double c, double shaft, double block) {
   closed_form::FreeState<double> turning = {};
-  if constexpr (std::is_same_v<State, closed_form::FreeState<double>>) turning = state;
+  if constexpr (std::is_base_of_v<closed_form::FreeState<double>, State>) turning = state;
   turning.omega = shaft;
   turning.block_omega = block;
   turning.omega_dot = turning.block_omega_dot = 0;
@@ -62,25 +63,38 @@ struct BudgetModel::Implementation {
   Budget evaluate(const Instant& instant);
   template <class State>
   Budget causes(const Instant& instant, const State& state) const;
+  template <class State>
+  double ratio_of_transfer(const Instant& instant, const State& state, double& wall_moment) const;
   // Whether the bores' forces act beside B, where they do work.
   bool off_the_ring() const { return prepared.numbers.block.contact != 1; }
   void put(Budget& budget, Cause cause, double on_shaft, double on_block) const;
+  /// Torque about z1 on the shaft of gear or joint that turn the block with `torque` about z2.
+  double on_shaft_of(double torque) const;
 
   Model model;
   PreparedPump prepared;
   double block_weight_and_spring;
   double torque_factor;
+  // Of a transfer without a gear at the instant: torque about z1 on the shaft per torque about z2
+  // on the block.
+  double shaft_per_block = 0;
   std::vector<double> values;
 };
+
+double BudgetModel::Implementation::on_shaft_of(double torque) const {
+  const closed_form::GearNumbers<double>& gear = prepared.numbers.gear;
+  if (prepared.transfer == TransferKind::gear)
+    return closed_form::tooth_on_shaft(gear, torque * gear.inverse_arm).moment.z;
+  return shaft_per_block * torque;
+}
 
 void BudgetModel::Implementation::put(Budget& budget, Cause cause, double on_shaft,
                                       double on_block) const {
   budget.carrying_of(cause) = on_block;
   budget.drive_of(cause) = on_shaft;
   if (prepared.imposed) return;
-  // The tooth force that carries the block against this load, as it acts on the shaft (43), (57).
-  const closed_form::GearNumbers<double>& gear = prepared.numbers.gear;
-  budget.drive_of(cause) -= closed_form::tooth_on_shaft(gear, on_block * gear.inverse_arm).moment.z;
+  // What carries the block against this load, as it acts on the shaft (43), (57).
+  budget.drive_of(cause) -= on_shaft_of(on_block);
 }
 
 template <class State>
@@ -145,6 +159,35 @@ Budget BudgetModel::Implementation::causes(const Instant& instant, const State& 
   return budget;
 }
 
+// Of a joint: its couple on both bodies. Of pistons: what their walls do to both; `wall_moment` is
+// that on the block.
+template <class State>
+double BudgetModel::Implementation::ratio_of_transfer(const Instant& instant, const State& state,
+                                                      double& wall_moment) const {
+  const closed_form::Pump<double>& p = prepared.numbers;
+  if (prepared.transfer == TransferKind::gear) return 0;
+  if constexpr (std::is_same_v<State, closed_form::WallState<double>>) {
+    closed_form::BlockLoad<double> block = {};
+    closed_form::ShaftLoad<double> shaft = {};
+    for (std::size_t k = 0; k < prepared.phase_sin.size(); ++k) {
+      const double s = state.sine * prepared.phase_cos[k] - state.cosine * prepared.phase_sin[k];
+      const double c = state.cosine * prepared.phase_cos[k] + state.sine * prepared.phase_sin[k];
+      const auto m = closed_form::piston_motion(p.frame, p.piston, state, s, c);
+      const auto at = closed_form::wall_approach(p.wall, m);
+      const double wall = closed_form::wall_force(p.wall, at, state.mode(static_cast<int>(k)));
+      closed_form::PistonForces<double> f = {};
+      closed_form::add_wall(p.wall, m, wall * at.x, wall * at.y, f, block);
+      closed_form::add_piston(p.block, m, f, 0.0, 0.0, block);
+      closed_form::add_joint(p.frame, f.rs, s, c, shaft);
+    }
+    wall_moment = block.moment.z;
+    return wall_moment == 0 ? 0 : -p.shaft.joint_radius * shaft.torque / wall_moment;
+  } else {
+    static_cast<void>(instant);
+    return closed_form::couple(p.joint, state, 1.0).on_shaft.z;
+  }
+}
+
 Budget BudgetModel::Implementation::evaluate(const Instant& instant) {
   // Tcs is a reaction where the gear carries the block, else it follows from the bores' forces.
   TeethAction teeth;
@@ -155,7 +198,11 @@ Budget BudgetModel::Implementation::evaluate(const Instant& instant) {
   const closed_form::Pump<double>& p = prepared.numbers;
   const bool toothed = model.has_teeth();
   Budget budget;
-  with_state<double>(instant, [&](const auto& state) { budget = causes(instant, state); });
+  double wall_moment = 0;
+  with_state<double>(prepared.transfer, p, instant, [&](const auto& state) {
+    shaft_per_block = ratio_of_transfer(instant, state, wall_moment);
+    budget = causes(instant, state);
+  });
 
   const ChannelLayout& at = model.layout();
   budget.drive_torque = values[at.Td()];
@@ -166,6 +213,10 @@ Budget BudgetModel::Implementation::evaluate(const Instant& instant) {
   budget.film = values[at.Fh()];
   if (prepared.imposed) {
     budget.carrying_torque = values[at.Tcs()];
+  } else if (prepared.transfer == TransferKind::pistons) {
+    budget.carrying_torque = wall_moment;
+  } else if (prepared.transfer != TransferKind::gear) {
+    budget.carrying_torque = values[at.carrying()];
   } else {
     const double tooth =
         closed_form::Math<double>::direction(instant.shaft.speed) * values[at.Rcs()];
@@ -195,11 +246,13 @@ ResultTable run_budget(const Case& the_case, const Assumptions& assumptions, con
                        const Progress& progress) {
   BudgetModel model(the_case.pump, assumptions);
   ResultTable table = budget_table("analytic", model.has_ring(), model.has_teeth());
+  const Model placing(the_case.pump, assumptions);
+  PlacedSamples placed(placing, the_case);
   Instant instant;
   const std::size_t count = samples.theta_deg.size();
   for (std::size_t row = 0; row < count; ++row) {
     samples.instant(row, instant);
-    append_budget(table, samples.theta_deg[row], model.evaluate(instant));
+    append_budget(table, samples.theta_deg[row], model.evaluate(placed.at(instant)));
     if (progress) progress(static_cast<double>(row + 1) / static_cast<double>(count));
   }
   return table;

@@ -70,9 +70,13 @@ struct DerivativeModel::Prepared {
 
 DerivativeModel::DerivativeModel(const PumpParameters& pump, const Assumptions& assumptions,
                                  std::span<const PumpParameters> directions)
-    : layout_(validate(pump).geometry.pistons), directions_(directions.size()) {
+    : layout_(validate(pump)), directions_(directions.size()) {
   if (pump.gear.contact == ToothContact::teeth)
     throw InputError("derivatives: [gear] contact = \"teeth\": must be \"rigid\" or \"compliant\"");
+  if (pump.transfer.kind == TransferKind::pistons)
+    throw InputError(
+        "derivatives: [transfer] kind = \"pistons\": must be of another kind: the lag of the block "
+        "is a root");
   Prepared prepared{prepare(pump, assumptions), {}};
   std::size_t first = 0;
   do {
@@ -88,7 +92,8 @@ DerivativeModel::DerivativeModel(DerivativeModel&&) noexcept = default;
 
 void DerivativeModel::reactions(const Instant& instant, std::span<const Instant> rates,
                                 std::span<double> values, std::span<double> derivatives) const {
-  require_locked(instant, "derivatives");
+  const TransferKind transfer = prepared_->pump.transfer;
+  if (transfer == TransferKind::gear) require_locked(instant, "derivatives");
   const auto n = static_cast<std::size_t>(layout_.pistons());
   const std::size_t reactions = layout_.reactions();
   const auto fits = [&](const Instant& rate) {
@@ -103,7 +108,7 @@ void DerivativeModel::reactions(const Instant& instant, std::span<const Instant>
     throw InputError("derivatives: space for " + std::to_string(derivatives.size()) +
                      " of them, needed are " + std::to_string(reactions * directions_));
   const closed_form::Common common = prepared_->pump.common();
-  if (common.imposed) {
+  if (!prepared_->pump.has_tooth_force()) {
     values[layout_.Rcs()] = not_computed();
     for (std::size_t d = 0; d < directions_; ++d)
       derivatives[d * reactions + layout_.Rcs()] = not_computed();
@@ -117,7 +122,7 @@ void DerivativeModel::reactions(const Instant& instant, std::span<const Instant>
       return x;
     };
     const Dual theta = number([](const Instant& i) { return i.shaft.angle; });
-    closed_form::State<Dual> state;
+    closed_form::CardanState<Dual> state;
     state.sine = sin(theta);
     state.cosine = cos(theta);
     state.omega = number([](const Instant& i) { return i.shaft.speed; });
@@ -129,13 +134,23 @@ void DerivativeModel::reactions(const Instant& instant, std::span<const Instant>
         return i.chamber_pressure.empty() ? 0 : i.chamber_pressure[static_cast<std::size_t>(k)];
       });
     };
-    closed_form::reactions<Dual>(common, prepared_->numbers[chunk], state, true, pressure,
-                                 [&](int index, const Dual& value) {
-                                   const auto c = static_cast<std::size_t>(index);
-                                   values[c] = value.value;
-                                   for (std::size_t d = 0; d < count; ++d)
-                                     derivatives[(first + d) * reactions + c] = value.rate[d];
-                                 });
+    const auto evaluate = [&](const auto& turning) {
+      closed_form::reactions<Dual>(common, prepared_->numbers[chunk], turning, true, pressure,
+                                   [&](int index, const Dual& value) {
+                                     const auto c = static_cast<std::size_t>(index);
+                                     values[c] = value.value;
+                                     for (std::size_t d = 0; d < count; ++d)
+                                       derivatives[(first + d) * reactions + c] = value.rate[d];
+                                   });
+    };
+    if (transfer == TransferKind::cardan) {
+      closed_form::turn_block(prepared_->numbers[chunk].joint, state);
+      evaluate(state);
+    } else if (transfer == TransferKind::constant_velocity) {
+      evaluate(closed_form::JointState<Dual>{state});
+    } else {
+      evaluate(static_cast<const closed_form::State<Dual>&>(state));
+    }
   }
 }
 

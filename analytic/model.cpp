@@ -9,6 +9,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "bentaxis/analytic/constant_speed.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/validate.h"
@@ -86,7 +87,7 @@ Model::Model(const PumpParameters& pump, const Assumptions& assumptions)
 
 Model::Model(const PumpParameters& pump, const Assumptions& assumptions, Unchecked)
     : pump_(pump),
-      layout_(pump.geometry.pistons),
+      layout_(pump),
       prepared_(std::make_shared<const PreparedPump>(prepare(pump, assumptions))) {}
 
 namespace {
@@ -106,24 +107,29 @@ closed_form::Pump<long double> extended(const closed_form::Pump<double>& pump) {
 
 template <class Real>
 void all_reactions(const closed_form::Common& common, const closed_form::Pump<Real>& pump,
-                   const Instant& instant, Real* results) {
-  with_state<Real>(instant, [&](const auto& state) {
-    closed_form::reactions<Real>(
-        common, pump, state, true,
-        [pressure = instant.chamber_pressure.data()](int k) { return Real(pressure[k]); },
-        [results](int index, Real value) { results[index] = value; });
-  });
+                   const Instant& instant, Real* results,
+                   const closed_form::WallMode* modes = nullptr) {
+  with_state<Real>(
+      common.transfer, pump, instant,
+      [&](const auto& state) {
+        closed_form::reactions<Real>(
+            common, pump, state, true,
+            [pressure = instant.chamber_pressure.data()](int k) { return Real(pressure[k]); },
+            [results](int index, Real value) { results[index] = value; });
+      },
+      modes);
 }
 
 }  // namespace
 
 bool Model::has_teeth() const { return prepared_->teeth && !prepared_->imposed; }
 
-std::optional<Model::Settled> Model::find(const Instant& instant,
-                                          std::vector<double>& values) const {
+std::optional<Model::Settled> Model::find(const Instant& instant, std::vector<double>& values,
+                                          const closed_form::WallMode* modes) const {
   require_sizes(instant, values, layout_.pistons(), layout_.reactions());
-  if (prepared_->imposed) values[layout_.Rcs()] = not_computed();
-  all_reactions(prepared_->common(), prepared_->numbers, instant, values.data());
+  if (!prepared_->has_tooth_force()) values[layout_.Rcs()] = not_computed();
+  all_reactions(values.size() < layout_.size() ? prepared_->common() : prepared_->common(layout_),
+                prepared_->numbers, instant, values.data(), modes);
   if (!has_teeth()) return {};
   return resolve_tooth_contact(instant, values);
 }
@@ -135,13 +141,31 @@ void Model::act(const Instant& instant, const ToothLag& lag, TeethAction& teeth)
 
 void Model::reactions(const Instant& instant, std::vector<double>& values,
                       TeethAction* teeth) const {
-  const auto settled = find(instant, values);
+  const auto settled = find(instant, values, nullptr);
   if (settled && teeth != nullptr) act(instant, settled->lag, *teeth);
+}
+
+void Model::reactions_held(const Instant& instant, std::vector<double>& values,
+                           const closed_form::WallMode* modes) const {
+  find(instant, values, modes);
+}
+
+AxisMotion Model::block_motion(const AxisMotion& shaft) const {
+  if (prepared_->transfer != TransferKind::cardan) return shaft;
+  Instant instant;
+  instant.shaft = shaft;
+  AxisMotion block;
+  with_state<double>(prepared_->transfer, prepared_->numbers, instant, [&](const auto& state) {
+    if constexpr (std::is_base_of_v<closed_form::FreeState<double>, std::decay_t<decltype(state)>>)
+      block = {shaft.angle + std::atan2(state.lead_sine, 1 - state.lead_versine), state.block_omega,
+               state.block_omega_dot};
+  });
+  return block;
 }
 
 void Model::reactions(const Instant& instant, std::vector<long double>& values) const {
   require_sizes(instant, values, layout_.pistons(), layout_.reactions());
-  if (prepared_->imposed) values[layout_.Rcs()] = not_computed();
+  if (!prepared_->has_tooth_force()) values[layout_.Rcs()] = not_computed();
   all_reactions(prepared_->common(), extended(prepared_->numbers), instant, values.data());
   if (has_teeth()) resolve_tooth_contact(instant, values);
 }
@@ -204,19 +228,39 @@ Model::Settled Model::resolve_tooth_contact(const Instant& instant,
 
 namespace {
 
+// How the block turns, where it does not turn as the shaft and the layout has columns for that.
+template <class State>
+void put_block_motion(const ChannelLayout& at, const Instant& instant, const State& state,
+                      std::vector<double>& values) {
+  if (!at.has(Quantity::psi)) return;
+  const double lead = std::atan2(state.lead_sine, 1 - state.lead_versine);
+  values[at.psi()] = instant.shaft.angle + lead;
+  if (at.has(Quantity::lag)) {
+    // Given angles may be turns apart; a lag of its own digits is given as such.
+    values[at.lag()] = instant.lag ? instant.lag->angle : instant.shaft.angle - instant.block.angle;
+    values[at.psi()] = instant.shaft.angle - values[at.lag()];
+  }
+  if (at.has(Quantity::psi_speed)) {
+    values[at.psi_speed()] = state.block_omega;
+    values[at.psi_acceleration()] = state.block_omega_dot;
+  }
+}
+
 // What follows from reactions that are found, and the checks. Sums of power are per unit of the
 // motion's parameter (closed_form/state.h): over omega where the block is locked to the shaft.
 template <class State>
 MotionChecks judge(const PreparedPump& pump, const PumpParameters& parameters,
                    const ChannelLayout& at, const Instant& instant, const State& state,
                    const BevelTeeth::Wrench* teeth, std::vector<double>& values) {
-  constexpr bool kLocked = std::is_same_v<State, closed_form::State<double>>;
+  constexpr bool kLocked = !std::is_base_of_v<closed_form::FreeState<double>, State>;
+  constexpr bool kWalls = std::is_same_v<State, closed_form::WallState<double>>;
   const closed_form::Pump<double>& numbers = pump.numbers;
   const closed_form::PistonNumbers<double>& p = numbers.piston;
   const Kinematics kinematics(parameters.geometry);
   const Friction& friction = parameters.friction;
   const AxisMotion& shaft = instant.shaft;
-  const AxisMotion& block = instant.block;
+  // The angle is that of a gear's block, which its teeth ask for.
+  const AxisMotion block = {instant.block.angle, state.block_speed(), state.block_acceleration()};
   const double rate = state.rate();
   const Vector3d gravity(0, p.gravity_y, p.gravity_z);
   const double length = parameters.geometry.piston_length;
@@ -234,7 +278,7 @@ MotionChecks judge(const PreparedPump& pump, const PumpParameters& parameters,
             numbers.shaft.inertia * shaft.acceleration) *
                shaft.speed -
            carry * block.speed;
-    if (!pump.imposed) {
+    if (pump.has_tooth_force()) {
       const double tooth = on_block(instant, values[at.Rcs()]);
       work +=
           closed_form::tooth_on_block(numbers.gear, tooth).moment.z * (block.speed - shaft.speed);
@@ -271,6 +315,10 @@ MotionChecks judge(const PreparedPump& pump, const PumpParameters& parameters,
 
     const Vector3d centre_path = joint_path + share_of_centre * axis_path;
     const Vector3d centre_acceleration = joint_acceleration + share_of_centre * axis_acceleration;
+    if constexpr (kWalls) {
+      const auto wall = closed_form::wall_approach(numbers.wall, piston.motion);
+      work -= (values[at.Rw(k, 0)] * wall.x + values[at.Rw(k, 1)] * wall.y) * wall.rate;
+    }
     work += axial * (joint_path.z() + axis_path.z()) +
             p.mass * (gravity - centre_acceleration).dot(centre_path) -
             inertia_centre * axis_acceleration.dot(axis_path);
@@ -290,7 +338,9 @@ MotionChecks judge(const PreparedPump& pump, const PumpParameters& parameters,
                             p.spin_momentum * rate * axis_path;
     values[at.axis_moment(k)] = axis.dot(moment) / length;
   }
-  values[at.Tcs()] = carry;
+  if (at.has(Quantity::Tcs)) values[at.Tcs()] = carry;
+  if constexpr (kWalls) work += values[at.Tb()] * block.speed;
+  if constexpr (!kLocked) put_block_motion(at, instant, state, values);
   work += ring_work;
   // The gear passes power on; an imposed block speed brings in power of its own.
   if (pump.imposed) work = kLocked ? work + carry : work + carry * block.speed;
@@ -310,8 +360,13 @@ MotionChecks judge(const PreparedPump& pump, const PumpParameters& parameters,
 
 void Model::evaluate(const Instant& instant, std::vector<double>& values, MotionChecks* checks,
                      TeethAction* teeth) const {
+  evaluate_held(instant, values, checks, teeth, nullptr);
+}
+
+void Model::evaluate_held(const Instant& instant, std::vector<double>& values, MotionChecks* checks,
+                          TeethAction* teeth, const closed_form::WallMode* modes) const {
   require_sizes(instant, values, layout_.pistons(), layout_.size());
-  const auto settled = find(instant, values);
+  const auto settled = find(instant, values, modes);
   if (settled && teeth != nullptr) act(instant, settled->lag, *teeth);
   const ChannelLayout& at = layout_;
   const double fh = values[at.Fh()];
@@ -319,7 +374,7 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values, Motion
   values[at.yh()] = fh == 0 ? not_computed() : values[at.Th(0)] / fh;
 
   MotionChecks found;
-  with_state<double>(instant, [&](const auto& state) {
+  with_state<double>(prepared_->transfer, prepared_->numbers, instant, [&](const auto& state) {
     found =
         judge(*prepared_, pump_, at, instant, state, settled ? &settled->wrench : nullptr, values);
   });
@@ -353,11 +408,11 @@ Model::FrictionPower Model::friction_power(const Instant& instant, double drive_
   const Friction& friction = pump_.friction;
   const double omega = instant.shaft.speed;
   FrictionPower power;
-  power.block = -friction.block_viscous * instant.block.speed * instant.block.speed;
   power.shaft_viscous = -friction.shaft_viscous * omega * omega;
   power.shaft_proportional = -(1 - friction.shaft_torque_factor) * drive_torque * omega;
   power.pistons = -std::numeric_limits<double>::infinity();
-  with_state<double>(instant, [&](const auto& state) {
+  with_state<double>(prepared_->transfer, prepared_->numbers, instant, [&](const auto& state) {
+    power.block = -friction.block_viscous * state.block_speed() * state.block_speed();
     for (int k = 0; k < layout_.pistons(); ++k) {
       const PistonState piston = piston_state(*prepared_, state, instant.chamber_pressure[k], k);
       power.pistons = std::max(power.pistons, piston.friction * piston.ring_velocity);
@@ -409,16 +464,21 @@ ResultTable run(const Case& the_case, const Assumptions& assumptions, const Samp
                 const Progress& progress, ResultTable* teeth) {
   const auto start = std::chrono::steady_clock::now();
   const Model model(validate(the_case).pump, assumptions);
+  require_constant_speed(the_case);
+  require_free_play(the_case);
   TeethRows acting(model, the_case.pump.gear, teeth);
+  PlacedSamples placed(model, the_case);
   ResultTable table = tabulate(
       "analytic", model.layout(), samples,
       [&](const Instant& instant, std::vector<double>& row) {
-        model.evaluate(instant, row, nullptr, acting.next());
+        evaluate_at_constant_speed(model, placed.at(instant), row, acting.next());
         acting.add(samples.theta_deg[acting.rows()]);
       },
       progress);
   note(table.provenance, start, model.layout().pistons(),
        "exact derivatives with respect to theta (9)-(23)");
+  if (the_case.pump.transfer.kind == TransferKind::pistons)
+    table.provenance.facts.emplace_back("frozen lag", placed.rules().text());
   return table;
 }
 

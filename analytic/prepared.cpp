@@ -23,6 +23,9 @@ void prepare(const PumpParameters& pump, const Assumptions& assumptions, Prepare
   result.teeth.reset();
   if (pump.gear.contact == ToothContact::teeth)
     result.teeth = BevelTeeth(pump, BevelTeeth::Unchecked{});
+  if (const std::string why = imposed_refusal(assumptions.gear, pump); !why.empty())
+    throw InputError("gear = \"imposed\": " + why);
+  result.transfer = pump.transfer.kind;
   result.imposed = assumptions.gear == BlockDrive::imposed;
   const auto pistons = static_cast<std::size_t>(pump.geometry.pistons);
   if (result.phase_sin.size() == pistons) return;

@@ -6,6 +6,7 @@
 
 #include "bentaxis/analytic/teeth.h"
 #include "bentaxis/pump/parameters.h"
+#include "bentaxis/results/channels.h"
 #include "closed_form/pump.h"
 
 namespace bentaxis::analytic {
@@ -23,6 +24,8 @@ closed_form::FrictionLaw prepare_numbers(const closed_form::RawPump<T>& raw,
   closed_form::prepare(raw, pump.port_plate.has_value(), p.film);
   closed_form::prepare(raw, pump.gear.flanks, p.gear);
   closed_form::prepare(raw, p.frame, p.shaft);
+  closed_form::prepare(raw, p.joint);
+  closed_form::prepare(raw, p.wall);
   return law;
 }
 
@@ -30,14 +33,29 @@ closed_form::FrictionLaw prepare_numbers(const closed_form::RawPump<T>& raw,
 struct PreparedPump {
   closed_form::Pump<double> numbers;
   bool imposed = false;
+  TransferKind transfer = TransferKind::gear;
   closed_form::FrictionLaw friction;
   std::optional<closed_form::ToothLaw> tooth_law;  // of flanks that give way
   std::optional<BevelTeeth> teeth;                 // where the contact is theirs
   std::vector<double> phase_sin, phase_cos;        // of 2 pi k / N
 
+  /// Whether a gear's teeth carry the block round.
+  bool has_tooth_force() const { return transfer == TransferKind::gear && !imposed; }
   closed_form::Common common() const {
-    return {static_cast<int>(phase_sin.size()), phase_sin.data(), phase_cos.data(), imposed,
-            friction};
+    return {static_cast<int>(phase_sin.size()),
+            phase_sin.data(),
+            phase_cos.data(),
+            imposed,
+            friction,
+            transfer};
+  }
+  /// The same where there is room for the transfer's own columns.
+  closed_form::Common common(const ChannelLayout& at) const {
+    closed_form::Common result = common();
+    if (at.has(Quantity::TcsJoint)) result.couple_column = static_cast<int>(at.TcsJoint(0));
+    if (at.has(Quantity::Rw)) result.wall_column = static_cast<int>(at.Rw(0, 0));
+    if (at.has(Quantity::Tb)) result.block_torque_column = static_cast<int>(at.Tb());
+    return result;
   }
 };
 

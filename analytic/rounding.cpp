@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bentaxis/analytic/constant_speed.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/inputs.h"
 #include "bentaxis/pump/units.h"
@@ -148,9 +149,14 @@ double pressure_rounding(const PressureTrace& trace, double theta_k_deg) {
 std::vector<GroupRounding> estimate_rounding(const Case& the_case, const Assumptions& assumptions,
                                              const Samples& samples, const PressureTrace& trace,
                                              std::size_t most_angles) {
+  // Where pistons carry the block their lag is a root: a wall force has the round-off of a length
+  // times the stiffness, whatever the inputs' (docs/transfer.md).
+  if (the_case.pump.transfer.kind == TransferKind::pistons) return {};
   const RoundingEstimate estimate(the_case.pump, assumptions);
   const bool computed =
       the_case.pressure.kind == PressureKind::hydraulic && the_case.pressure.points == 0;
+  const Model model(the_case.pump, assumptions);
+  PlacedSamples placed(model, the_case);
   const ChannelLayout& layout = estimate.layout();
   std::vector<GroupRounding> groups;
   Instant instant;
@@ -163,7 +169,7 @@ std::vector<GroupRounding> estimate_rounding(const Case& the_case, const Assumpt
     for (int k = 1; k <= samples.pistons; ++k)
       pressure[k - 1] = pressure_rounding(
           trace, piston_angle_deg(samples.theta_deg[row], k, samples.pistons), computed);
-    estimate.estimate(instant, pressure, parts);
+    estimate.estimate(placed.at(instant), pressure, parts);
     for (std::size_t c = 0; c < layout.reactions(); ++c) {
       const std::string& name = layout.channels()[c].group;
       auto group = std::find_if(groups.begin(), groups.end(),

@@ -2,30 +2,63 @@
 #pragma once
 
 #include "bentaxis/results/instant.h"
+#include "closed_form/pump.h"
 #include "closed_form/state.h"
 
 namespace bentaxis::analytic {
 
-/// Calls `use` with the closed_form::State of an instant, or with the FreeState of one whose block
-/// moves on its own.
+/// Calls `use` with the state of an instant that the transfer has: closed_form::State where the
+/// block is locked to the shaft; FreeState where it moves on its own; JointState or CardanState,
+/// whose block follows from the shaft alone; or WallState. The block's motion of an instant is not
+/// looked at where a joint prescribes it.
+/// @param modes  of the walls, where pistons carry the block; null: all by their law
 template <class Real, class Use>
-BENTAXIS_INLINE void with_state(const Instant& instant, const Use& use) {
+BENTAXIS_INLINE void with_state(TransferKind transfer, const closed_form::Pump<Real>& pump,
+                                const Instant& instant, const Use& use,
+                                const closed_form::WallMode* modes = nullptr) {
   const Real theta = instant.shaft.angle;
+  const auto turn_shaft = [&](auto& state) {
+    state.sine = std::sin(theta);
+    state.cosine = std::cos(theta);
+    state.omega = instant.shaft.speed;
+    state.omega_dot = instant.shaft.acceleration;
+    state.suction = instant.ports.suction;
+    state.delivery = instant.ports.delivery;
+  };
+  const auto turn_block = [&](auto& state, const Real& half_lead) {
+    state.lead(std::sin(half_lead), std::cos(half_lead));
+    state.block_omega = instant.block.speed;
+    state.block_omega_dot = instant.block.acceleration;
+  };
+  if (transfer == TransferKind::cardan) {
+    closed_form::CardanState<Real> state;
+    turn_shaft(state);
+    closed_form::turn_block(pump.joint, state);
+    use(state);
+    return;
+  }
+  if (transfer == TransferKind::pistons) {
+    closed_form::WallState<Real> state;
+    turn_shaft(state);
+    turn_block(state, instant.lag ? Real(-instant.lag->angle) / 2
+                                  : (Real(instant.block.angle) - theta) / 2);
+    state.modes = modes;
+    use(state);
+    return;
+  }
+  if (transfer == TransferKind::constant_velocity) {
+    closed_form::JointState<Real> state;
+    turn_shaft(state);
+    use(state);
+    return;
+  }
   closed_form::FreeState<Real> state;
-  state.sine = std::sin(theta);
-  state.cosine = std::cos(theta);
-  state.omega = instant.shaft.speed;
-  state.omega_dot = instant.shaft.acceleration;
-  state.suction = instant.ports.suction;
-  state.delivery = instant.ports.delivery;
+  turn_shaft(state);
   if (instant.locked()) {
     use(static_cast<const closed_form::State<Real>&>(state));
     return;
   }
-  const Real half_lead = (Real(instant.block.angle) - theta) / 2;
-  state.lead(std::sin(half_lead), std::cos(half_lead));
-  state.block_omega = instant.block.speed;
-  state.block_omega_dot = instant.block.acceleration;
+  turn_block(state, (Real(instant.block.angle) - theta) / 2);
   use(state);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "bentaxis/analytic/constant_speed.h"
 #include "bentaxis/analytic/teeth.h"
 #include "bentaxis/pump/number.h"
 
@@ -70,11 +71,12 @@ ValidityLimit ring_limit(const Model& model, const Case& the_case, const Samples
   ring.key = "ring";
   ring.unit = "W";
   Instant instant;
+  PlacedSamples placed(model, the_case);
   std::vector<double> values(model.layout().size());
   const auto power = [&](std::size_t row) {
     MotionChecks checks;
     samples.instant(row, instant);
-    model.evaluate(instant, values, &checks);
+    model.evaluate(placed.at(instant), values, &checks);
     return checks.ring_power;
   };
   scan(
@@ -141,7 +143,10 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
   flank.key = "flank";
   flank.unit = "N";
   scan(flank, table, value(at.Rcs()), value(at.Rcs()));
-  flank.consequence = "no tooth force: the block's speed is imposed";
+  const TransferKind kind = the_case.pump.transfer.kind;
+  flank.consequence = kind == TransferKind::gear
+                          ? "no tooth force: the block's speed is imposed"
+                          : "no tooth force: [transfer] kind = \"" + to_string(kind) + "\"";
   if (flank.applicable) {
     // (22) turns with the speed: so does the sign at which one line and two flanks differ.
     ValidityLimit pulled;
@@ -153,7 +158,7 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
   }
   limits.push_back(flank);
 
-  if (samples.omega < 0 && !two) {
+  if (samples.omega < 0 && !two && kind == TransferKind::gear) {
     ValidityLimit turned;
     turned.limit = "separating part of the tooth force pushes the gears apart";
     turned.name = "separating force reversed by sign(omega)";
@@ -216,9 +221,10 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
   friction.key = "friction";
   friction.unit = "W";
   Instant instant;
+  PlacedSamples placed(model, the_case);
   const auto power = [&](std::size_t row) {
     samples.instant(row, instant);
-    const Model::FrictionPower p = model.friction_power(instant, table.at(row, at.Td()));
+    const Model::FrictionPower p = model.friction_power(placed.at(instant), table.at(row, at.Td()));
     return std::max({p.pistons, p.block, p.shaft_viscous, p.shaft_proportional});
   };
   scan(

@@ -16,6 +16,12 @@ SimTK::SpatialVec constraint_force_on(const SimTK::State& state,
                                       const SimTK::Constraint& constraint,
                                       const SimTK::MobilizedBody& body);
 
+/// The same for multipliers of 1: the directions in which a constraint of one equation acts.
+/// @param state  realized to Velocity
+SimTK::SpatialVec unit_constraint_force_on(const SimTK::State& state,
+                                           const SimTK::Constraint& constraint,
+                                           const SimTK::MobilizedBody& body);
+
 /// Forces and moments of all mobilizers on their bodies at the outboard frame's origin M.
 /// Index by MobilizedBodyIndex.
 void joint_forces(const SimTK::State& state, const SimTK::SimbodyMatterSubsystem& matter,

@@ -1,9 +1,13 @@
 // One turn of a case, evaluated angle by angle.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/units.h"
 #include "bentaxis/pump/validate.h"
 #include "bentaxis/results/stopwatch.h"
 
@@ -45,6 +49,17 @@ bool one_stands_for_all(const Samples& samples) {
   return true;
 }
 
+std::string rows_by_rule_text(const std::array<long, kLagRules>& rows) {
+  static const char* const names[] = {"in the middle of the free play, without load",
+                                      "pushed to the driving side", "pushed to the trailing side",
+                                      "in balance within the free play"};
+  std::string text;
+  for (std::size_t rule = 0; rule < kLagRules; ++rule)
+    if (rows[rule] > 0)
+      text += (text.empty() ? "" : ", ") + std::to_string(rows[rule]) + " rows " + names[rule];
+  return text;
+}
+
 }  // namespace
 
 ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
@@ -56,7 +71,16 @@ ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, con
                      " pistons for a pump with " + std::to_string(the_case.pump.geometry.pistons));
   const Stopwatch stopwatch;
   Model model(the_case.pump, assumptions, samples.omega, scene, method);
-  const bool shared = scene == Scene::piston && one_stands_for_all(samples);
+  // With a universal joint each piston has a trajectory of its own.
+  const TransferKind transfer = the_case.pump.transfer.kind;
+  const bool shared =
+      scene == Scene::piston && transfer != TransferKind::cardan && one_stands_for_all(samples);
+  // Where the block is not locked to the shaft, chambers are at the pressures of its own angle.
+  std::optional<PressureTrace> pressure;
+  if (transfer == TransferKind::cardan || transfer == TransferKind::pistons)
+    pressure.emplace(the_case.pressure);
+  std::array<long, kLagRules> rows_by_rule = {};
+  Instant moved;
   std::vector<std::vector<double>> of_one;
   if (shared) {
     Instant instant;
@@ -77,8 +101,21 @@ ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, con
   const ChannelLayout& at = model.layout();
   const auto evaluate = [&](const Instant& instant, std::vector<double>& row) {
     if (!shared) {
-      model.evaluate(instant, row);
       const double angle = samples.theta_deg[next++];
+      if (transfer == TransferKind::pistons) {
+        const LagRule rule =
+            model.evaluate_at_frozen_lag(angle, samples.omega, *pressure, samples.ports, row);
+        ++rows_by_rule[static_cast<std::size_t>(rule)];
+      } else if (transfer == TransferKind::cardan) {
+        moved = instant;
+        const double lead = model.block_beside(instant.shaft).angle - instant.shaft.angle;
+        for (int k = 1; k <= at.pistons(); ++k)
+          moved.chamber_pressure[k - 1] =
+              (*pressure)(piston_angle_deg(angle + lead / kRadPerDegree, k, at.pistons()));
+        model.evaluate(moved, row);
+      } else {
+        model.evaluate(instant, row);
+      }
       if (budget != nullptr) append_budget(*budget, angle, model.budget());
       if (teeth != nullptr) append_teeth(*teeth, angle, the_case.pump.gear, model.teeth());
       if (loads != nullptr) loads->append(model.body_loads());
@@ -98,6 +135,8 @@ ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, con
   };
   ResultTable table = tabulate("multibody", at, samples, evaluate, progress);
   table.provenance = model.provenance();
+  if (transfer == TransferKind::pistons)
+    table.provenance.facts.emplace_back("lag", rows_by_rule_text(rows_by_rule));
   if (scene == Scene::piston)
     table.provenance.facts.emplace_back(
         "pistons", shared ? "one piston represents all" : "evaluated one by one");

@@ -23,6 +23,12 @@ void check(const Case& the_case, const Samples& samples) {
                      " pistons for a pump with " + std::to_string(the_case.pump.geometry.pistons));
   refuse_ring_off_b(the_case.pump);
   refuse_teeth(the_case);
+  const TransferKind transfer = the_case.pump.transfer.kind;
+  if (transfer == TransferKind::cardan || transfer == TransferKind::pistons)
+    throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") +
+                     "[transfer] kind = \"" + to_string(transfer) +
+                     "\": not integrated by run --way integrated, where the block turns as the "
+                     "shaft does; use the driven way, or simulate");
   if (the_case.operation.speed_rpm == 0)
     throw InputError(the_case.file.string() +
                      ": [operation] speed_rpm = 0: an integrated run needs a speed other than 0 "
@@ -58,7 +64,7 @@ IntegratedRun run_integrated(const Case& the_case, const Assumptions& assumption
   IntegratedRun result;
   translate_simbody_errors([&] {
     TimeRun run(the_case, assumptions, samples, pressure, options, Drive::constant_speed);
-    const ChannelLayout layout(samples.pistons);
+    const ChannelLayout layout(the_case.pump);
     std::vector<std::vector<double>> rows;
     run.run(progress, [&](std::size_t row) {
       rows.emplace_back(layout.size(), not_computed());

@@ -20,6 +20,8 @@
 #include "reactions/solver_guard.h"
 #include "scene/pump_system.h"
 #include "scene_facts.h"
+#include "transfers/frozen_lag.h"
+#include "transfers/joint.h"
 
 namespace bentaxis::multibody {
 
@@ -37,7 +39,7 @@ AxisMotion turned_back(const AxisMotion& motion, int k, int n) {
 struct Model::Implementation {
   Implementation(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign,
                  Scene the_scene, std::optional<Method> asked)
-      : layout(validate(pump).geometry.pistons),
+      : layout(validate(pump)),
         scene(the_scene),
         method(method_for(pump, asked)),
         method_is_given(asked.has_value()),
@@ -49,13 +51,23 @@ struct Model::Implementation {
     system.inputs().chamber_pressure = [this](double, double, std::vector<double>& p) {
       p = pressure;
     };
+    if (pump.transfer.is_joint()) joint_motion = std::make_unique<JointMotion>(pump);
+    if (pump.transfer.kind == TransferKind::pistons && the_scene != Scene::full)
+      throw InputError("multibody model: --scene " +
+                       scene_names()[static_cast<std::size_t>(the_scene)] +
+                       ": must be full beside [transfer] kind = \"pistons\", whose walls need the "
+                       "block's balance");
     if (method == Method::multipliers) system.require_piston_inertia();
   }
 
   void check(const Instant& instant) const;
   void require_sizes(const Instant& instant, const std::vector<double>& values) const;
   void evaluate(const Instant& instant, std::vector<double>& values, MotionChecks* checks);
+  void place(const AxisMotion& shaft, const AxisMotion& block, const PortPressures& ports);
   void place_and_solve(const AxisMotion& shaft, const AxisMotion& block, const Instant& instant);
+  AxisMotion block_beside(const AxisMotion& shaft);
+  LagRule evaluate_at_frozen_lag(double theta_deg, double speed, const PressureTrace& trace,
+                                 const PortPressures& ports, std::vector<double>& values);
   void settle_teeth(const Instant& instant);
   void check_rank();
 
@@ -66,6 +78,7 @@ struct Model::Implementation {
   PumpParameters parameters;
   PumpSystem system;
   Placement placement;
+  std::unique_ptr<JointMotion> joint_motion;  // of a pump with a joint
   InverseDynamics inverse_dynamics;
   BodyLoadReader load_reader;
   Reactions reactions;
@@ -137,16 +150,22 @@ void Model::Implementation::settle_teeth(const Instant& instant) {
   teeth = system.bevel()->action(state);
 }
 
-// Finds the reactions at a motion of shaft and block under the pressures in `pressure`.
-void Model::Implementation::place_and_solve(const AxisMotion& shaft, const AxisMotion& block,
-                                            const Instant& instant) {
-  system.inputs().ports = instant.ports;
+void Model::Implementation::place(const AxisMotion& shaft, const AxisMotion& block,
+                                  const PortPressures& ports) {
+  system.inputs().ports = ports;
   // At standstill the pistons' velocities are round-off of the projection, with any sign.
   system.inputs().rest_speed = shaft.speed == 0 && block.speed == 0
                                    ? std::numeric_limits<double>::infinity()
                                    : rest_speed_at(system.pump().geometry, shaft.speed);
   ++placements;
   placement.place(shaft, block);
+}
+
+// Finds the reactions at a motion of shaft and block under the pressures in `pressure`.
+void Model::Implementation::place_and_solve(const AxisMotion& shaft, const AxisMotion& block,
+                                            const Instant& instant) {
+  place(shaft, block, instant.ports);
+  reactions.block_is_given = true;
   SimTK::State& state = system.dynamics();
   if (system.bevel() != nullptr) settle_teeth(instant);
   if (method == Method::multipliers) {
@@ -169,8 +188,66 @@ void Model::Implementation::place_and_solve(const AxisMotion& shaft, const AxisM
   }
 }
 
-void Model::Implementation::evaluate(const Instant& instant, std::vector<double>& values,
+AxisMotion Model::Implementation::block_beside(const AxisMotion& shaft) {
+  return joint_motion ? joint_motion->block(shaft) : shaft;
+}
+
+LagRule Model::Implementation::evaluate_at_frozen_lag(double theta_deg, double speed,
+                                                      const PressureTrace& trace,
+                                                      const PortPressures& ports,
+                                                      std::vector<double>& values) {
+  const PumpParameters& p = system.pump();
+  const int n = layout.pistons();
+  Instant instant;
+  instant.ports = ports;
+  instant.shaft = {radians(theta_deg), speed, 0};
+  const auto turn_to = [&](double lag) {
+    instant.block = {instant.shaft.angle - lag, speed, 0};
+    instant.chamber_pressure.clear();
+    for (int k = 1; k <= n; ++k)
+      instant.chamber_pressure.push_back(
+          trace(piston_angle_deg(theta_deg - lag / kRadPerDegree, k, n)));
+  };
+  // What the block's motion needs beyond all that acts on it, turned round.
+  const auto moment = [&](double lag, bool walls) {
+    turn_to(lag);
+    pressure = instant.chamber_pressure;
+    system.wall_setting().apart = !walls;
+    place(instant.shaft, instant.block, instant.ports);
+    inverse_dynamics.solve(by_inverse_dynamics);
+    return -by_inverse_dynamics.imposed;
+  };
+  turn_to(0);
+  double most = 0;
+  for (const double at : instant.chamber_pressure) update_max_abs(most, at);
+  const double area = kPi * p.geometry.bore_diameter * p.geometry.bore_diameter / 4;
+  const double radius = p.geometry.joint_circle_radius;
+  const double scale = radius * std::max({most * area, p.piston.mass * speed * speed * radius,
+                                          p.piston.mass * std::abs(p.gravity)});
+  FrozenLag found;
+  try {
+    found = find_frozen_lag(free_play(p, instant.shaft.angle), moment, scale, speed);
+  } catch (...) {
+    system.wall_setting().apart = false;
+    throw;
+  }
+  system.wall_setting().apart = false;
+  turn_to(found.lag);
+  evaluate(instant, values, nullptr);
+  reactions.block_is_given = false;
+  values[layout.lag()] = found.lag;
+  values[layout.Tb()] = not_computed();  // none is left but round-off
+  return found.rule;
+}
+
+void Model::Implementation::evaluate(const Instant& given, std::vector<double>& values,
                                      MotionChecks* checks) {
+  Instant followed;
+  if (joint_motion) {
+    followed = given;
+    followed.block = block_beside(given.shaft);
+  }
+  const Instant& instant = joint_motion ? followed : given;
   check(instant);
   const int n = layout.pistons();
   if (scene == Scene::piston) {
@@ -188,19 +265,20 @@ void Model::Implementation::evaluate(const Instant& instant, std::vector<double>
     read_piston_channels(system, reactions, k, k, instant.chamber_pressure[k], layout, values);
   if (scene != Scene::full) return;
   // At standstill the power balance is taken with a virtual turn of 1 rad/s.
-  const bool stands = instant.locked() && instant.shaft.speed == 0;
+  const bool has_gear = layout.transfer() == TransferKind::gear;
+  const bool stands = has_gear && instant.locked() && instant.shaft.speed == 0;
   if (stands) placement.assemble({instant.shaft.angle, 1, 0}, {instant.block.angle, 1, 0});
   const WorkRate rate =
       stands ? WorkRate{system.assembly(), 1} : WorkRate{state, instant.shaft.speed};
   read_pump_channels(system, state, reactions, rate, {instant.shaft, instant.block}, pressure,
                      layout, values);
-  if (instant.locked() && checks == nullptr) return;
+  if (has_gear && instant.locked() && checks == nullptr) return;
   system.system().realize(state, Stage::Dynamics);
   placement.constrained_accelerations(accelerations);
   const MotionChecks found = motion_checks(system, state, reactions, accelerations,
                                            instant.shaft.angle - instant.block.angle);
   if (checks != nullptr) *checks = found;
-  if (!instant.locked())
+  if (!has_gear || !instant.locked())
     values[layout.power_residual()] =
         instant.shaft.speed == 0 ? not_computed() : found.power_balance / instant.shaft.speed;
 }
@@ -211,6 +289,23 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values, Motion
   translate_simbody_errors([&] { implementation_->evaluate(instant, values, checks); });
 }
 
+AxisMotion Model::block_beside(const AxisMotion& shaft) {
+  AxisMotion block;
+  translate_simbody_errors([&] { block = implementation_->block_beside(shaft); });
+  return block;
+}
+
+LagRule Model::evaluate_at_frozen_lag(double theta_deg, double speed, const PressureTrace& pressure,
+                                      const PortPressures& ports, std::vector<double>& values) {
+  if (layout().transfer() != TransferKind::pistons)
+    throw std::logic_error("evaluate_at_frozen_lag() is of pistons that turn the block");
+  LagRule rule{};
+  translate_simbody_errors([&] {
+    rule = implementation_->evaluate_at_frozen_lag(theta_deg, speed, pressure, ports, values);
+  });
+  return rule;
+}
+
 void Model::evaluate_one(const Instant& instant, std::vector<double>& values) {
   Implementation& self = *implementation_;
   if (self.scene != Scene::piston)
@@ -219,7 +314,9 @@ void Model::evaluate_one(const Instant& instant, std::vector<double>& values) {
   translate_simbody_errors([&] {
     self.check(instant);
     self.pressure.assign(1, instant.chamber_pressure[0]);
-    self.place_and_solve(instant.shaft, instant.block, instant);
+    self.place_and_solve(instant.shaft,
+                         self.joint_motion ? self.block_beside(instant.shaft) : instant.block,
+                         instant);
     read_piston_channels(self.system, self.reactions, 0, 0, instant.chamber_pressure[0],
                          self.layout, values);
   });

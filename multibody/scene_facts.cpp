@@ -84,11 +84,19 @@ Scene smallest_scene(const std::vector<Channel>& channels) {
 std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameters& pump,
                                                              const Assumptions& assumptions,
                                                              Scene scene) {
-  const bool mesh = assumptions.gear == BlockDrive::mesh;
+  const TransferKind transfer = pump.transfer.kind;
+  const bool mesh = transfer == TransferKind::gear && assumptions.gear == BlockDrive::mesh;
   const bool teeth = mesh && pump.gear.contact == ToothContact::teeth;
   const char* const gear =
-      !mesh    ? "gear replaced by a speed imposed on the block's joint"
-      : !teeth ? "gear in mesh (tooth force along z4 at O4)"
+      transfer == TransferKind::constant_velocity
+          ? "constant-velocity joint (shaft and block mirror images, one equation of their "
+            "rotations)"
+      : transfer == TransferKind::cardan
+          ? "universal joint (arms of two forks at right angles, one equation of their rotations)"
+      : transfer == TransferKind::pistons ? "pistons that touch their bores (spheres in cylinders, "
+                                            "contact found in a force element)"
+      : !mesh                             ? "gear replaced by a speed imposed on the block's joint"
+      : !teeth                            ? "gear in mesh (tooth force along z4 at O4)"
       : assumptions.flanks == FlankShape::octoid
           ? "octoid bevel teeth, contact found by Newton's method in a force element"
           : "spherical involute bevel teeth, contact found by Newton's method in a force element";
@@ -109,7 +117,10 @@ std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameter
       {"joints", "shaft spherical at C1, block pin about z2, pistons spherical at A to the shaft"},
       {"constraints",
        std::string("cylindrical bearing inline at C2 (2), speed of the shaft (1), ") +
-           (mesh && !teeth ? "gear (1), " : "") + "B on its bore axis (2 per piston)"}};
+           (pump.transfer.is_joint() ? "joint (1), "
+            : mesh && !teeth         ? "gear (1), "
+                                     : "") +
+           "B on its bore axis (2 per piston)"}};
 }
 
 SceneSize scene_size(const PumpParameters& pump, const Assumptions& assumptions, Scene scene) {

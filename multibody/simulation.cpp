@@ -21,16 +21,21 @@ namespace {
 std::vector<std::pair<std::string, std::string>> facts_of(const Case& the_case,
                                                           const Assumptions& assumptions) {
   const DriveKind drive = the_case.drive->kind;
-  const bool rigid = the_case.pump.gear.contact == ToothContact::rigid;
+  const TransferKind transfer = the_case.pump.transfer.kind;
+  const bool gear = transfer == TransferKind::gear;
+  const bool rigid = gear && the_case.pump.gear.contact == ToothContact::rigid;
   auto facts = scene_facts(the_case.pump, assumptions);
   for (auto& [name, fact] : facts) {
-    if (name == "scene" && !rigid)
+    if (name == "scene" && gear && !rigid)
       fact = "full pump, compliant tooth contact at O4 as a force element";
     if (name == "bodies" && drive == DriveKind::motor) fact += " and the motor's rotor";
     if (name == "constraints")
       fact = std::string("cylindrical bearing inline at C2 (2), ") +
              (drive == DriveKind::speed ? "angle of the shaft over time (1), " : "") +
-             (rigid ? "gear (1), " : "") + "B on its bore axis (2 per piston)";
+             (the_case.pump.transfer.is_joint() ? "joint (1), "
+              : rigid                           ? "gear (1), "
+                                                : "") +
+             "B on its bore axis (2 per piston)";
   }
   const char* const drives[] = {"angle of the shaft given over time", "torque on the shaft",
                                 "rotor on a pin about z1, coupling as a force element"};
@@ -54,7 +59,7 @@ Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
                                        options.accuracy.value_or(accuracy_for(options.error))};
   Trajectory trajectory;
   translate_simbody_errors([&] {
-    const ChannelLayout layout(the_case.pump.geometry.pistons);
+    const ChannelLayout layout(the_case.pump);
     trajectory.table = trajectory_table("multibody", layout, *the_case.drive);
     MotionRun run(the_case, assumptions, pressure, integration, method.most_steps,
                   options.body_loads);

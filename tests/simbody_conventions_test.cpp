@@ -5,6 +5,7 @@
 
 #include "conventions.h"
 #include "scene/gear_mesh.h"
+#include "transfers/joint.h"
 
 namespace bentaxis::multibody {
 namespace {
@@ -176,6 +177,85 @@ TEST(SimbodyConventions, FreeBodyTwinGivesTheSameJointForces) {
   w.matter.calcMobilizerReactionForcesUsingFreebodyMethod(state, slow);
   for (int i = 1; i < w.matter.getNumBodies(); ++i)
     EXPECT_LT((fast[i] - slow[i]).norm(), 1e-11 * slow[i].norm()) << i;
+}
+
+// A shaft and a block on axes that cross at an angle, turned at a speed and braked by a torque.
+struct TurnedBlock {
+  static constexpr double kTilt = 0.55, kSpeed = 37, kTorque = 11.3, kPhase = 0.4;
+
+  // The block's inertia may be shared with a fork that turns with it.
+  explicit TurnedBlock(double share_of_block)
+      : frame(Rotation(-kTilt, XAxis), Vec3(0, 0, 0.02)),
+        shaft(w.matter.updGround(), Transform(), Body::Rigid(rotor_of(0.002)), Transform()),
+        block(w.matter.updGround(), frame, Body::Rigid(rotor_of(0.0015 * share_of_block)),
+              Transform()),
+        drive(shaft, MobilizerUIndex(0), kSpeed) {
+    Force::ConstantTorque(w.forces, block, -kTorque * Vec3(frame.z()));
+  }
+  static MassProperties rotor_of(double inertia) { return {1, Vec3(0), Inertia(inertia)}; }
+
+  void move(State& state, const AxisMotion& of_shaft, const AxisMotion& of_block) {
+    shaft.setOneQ(state, 0, of_shaft.angle);
+    block.setOneQ(state, 0, of_block.angle);
+    shaft.setOneU(state, 0, of_shaft.speed);
+    block.setOneU(state, 0, of_block.speed);
+    w.system.realize(state, Stage::Velocity);
+  }
+
+  World w;
+  Transform frame;
+  MobilizedBody::Pin shaft, block;
+  Constraint::ConstantSpeed drive;
+};
+
+// The equation of a universal joint against a real cross: Simbody's universal mobilizer is two
+// forks with a cross that has no mass. Its outer fork turns with the block and has half of the
+// block's inertia.
+TEST(SimbodyConventions, UniversalJointIsTheUniversalMobilizer) {
+  PumpParameters pump;
+  pump.geometry.tilt = TurnedBlock::kTilt;
+  pump.transfer.kind = TransferKind::cardan;
+  pump.transfer.cardan = CardanJoint{TurnedBlock::kPhase};
+  TurnedBlock by_equation(1);
+  const BlockJoint joint(pump, by_equation.shaft, by_equation.block);
+
+  TurnedBlock by_cross(0.5);
+  // The mobilizer turns about x of the shaft's fork, then about y of the block's.
+  const Transform fork(Rotation(-TurnedBlock::kPhase, ZAxis));
+  MobilizedBody::Universal cross(by_cross.shaft, Transform(fork.R(), by_cross.frame.p()),
+                                 Body::Rigid(MassProperties(1e-9, Vec3(0), Inertia(0.00075))),
+                                 fork);
+  const Constraint::ConstantOrientation with_block(by_cross.block, Rotation(), cross, Rotation());
+
+  State one = by_equation.w.system.realizeTopology(), two = by_cross.w.system.realizeTopology();
+  JointMotion law(pump);
+  for (const double angle : {0.2, 0.9, 1.7, 2.4, 3.9, 5.5}) {
+    const AxisMotion turning{angle, TurnedBlock::kSpeed, 0};
+    const AxisMotion block = law.block(turning);
+    by_equation.move(one, turning, block);
+    by_equation.w.system.realize(one, Stage::Acceleration);
+    by_cross.move(two, turning, block);
+    // The cross fits between shaft and block, and lets their speeds through.
+    const Rotation seen(~by_cross.shaft.getBodyRotation(two) * by_cross.block.getBodyRotation(two));
+    cross.setQToFitRotation(two, Rotation(~fork.R() * seen * fork.R()));
+    by_cross.w.system.realize(two, Stage::Velocity);
+    const Vec3 rate =
+        by_cross.block.getBodyAngularVelocity(two) - by_cross.shaft.getBodyAngularVelocity(two);
+    cross.setUToFitAngularVelocity(two, ~fork.R() * (~by_cross.shaft.getBodyRotation(two) * rate));
+    by_cross.w.system.realize(two, Stage::Acceleration);
+    EXPECT_LT(two.getQErr().normInf(), 1e-14) << angle;
+    EXPECT_LT(two.getUErr().normInf(), 1e-12) << angle;
+    EXPECT_LT(one.getQErr().normInf(), 1e-14) << angle;
+    EXPECT_NEAR(by_equation.block.getOneUDot(one, 0), block.acceleration, 1e-9) << angle;
+    EXPECT_NEAR(by_cross.block.getOneUDot(two, 0), block.acceleration, 1e-7) << angle;
+    // What the equation's couple and the constraint to the fork give the block: the fork's inertia
+    // takes its half of the couple's part about the axis.
+    Vec3 couple = constraint_force_on(two, with_block, by_cross.block)[0];
+    couple += 0.00075 * by_cross.block.getOneUDot(two, 0) * Vec3(by_cross.frame.z());
+    EXPECT_LT(distance(joint.couple_on_block(one), couple), 1e-8 * TurnedBlock::kTorque) << angle;
+    EXPECT_NEAR(applied_generalized_force(one, by_equation.drive),
+                applied_generalized_force(two, by_cross.drive), 1e-8 * TurnedBlock::kTorque);
+  }
 }
 
 }  // namespace

@@ -93,6 +93,19 @@ struct LoopOrder {
 
 BatchJob::Column column(const Varying& v) { return {v.each, v.all}; }
 
+BatchJob::Block block_of(TransferKind transfer) {
+  switch (transfer) {
+    case TransferKind::constant_velocity:
+      return BatchJob::Block::joint;
+    case TransferKind::cardan:
+      return BatchJob::Block::cardan;
+    case TransferKind::gear:
+    case TransferKind::pistons:
+      break;
+  }
+  return BatchJob::Block::locked;
+}
+
 // What the kernel is given; points to `pressures`, which is filled in, and to what it is made of.
 using Pressures = std::array<BatchJob::Column, kMaxPistons>;
 BatchJob job_of(const PreparedPump& pump, const double* pumps, const ChannelLayout& layout,
@@ -103,6 +116,9 @@ BatchJob job_of(const PreparedPump& pump, const double* pumps, const ChannelLayo
   for (std::size_t k = 0; k < instants.chamber_pressure.size(); ++k)
     pressures[k] = column(instants.chamber_pressure[k]);
   const BlockMotion block = instants.block.value_or(BlockMotion{});
+  if (instants.block && pump.transfer != TransferKind::gear)
+    throw InputError("batch: a motion of the block: must be left out where [transfer] kind = \"" +
+                     to_string(pump.transfer) + "\" prescribes it");
   return {.common = pump.common(),
           .stream = false,
           .bodies = true,
@@ -114,7 +130,7 @@ BatchJob job_of(const PreparedPump& pump, const double* pumps, const ChannelLayo
           .omega_dot = column(instants.omega_dot),
           .suction = column(instants.suction),
           .delivery = column(instants.delivery),
-          .free = instants.block.has_value(),
+          .block = instants.block ? BatchJob::Block::free : block_of(pump.transfer),
           .psi = column(block.psi),
           .block_omega = column(block.omega),
           .block_omega_dot = column(block.omega_dot),
@@ -163,7 +179,7 @@ void run_job(const PreparedPump& pump, const double* pumps, const ChannelLayout&
   job.stream = streams(instants, outputs);
   job.bodies = std::any_of(bodies, outputs.end(), [](const double* p) { return p != nullptr; });
   job.outputs = outputs.data();
-  if (pump.imposed && outputs[layout.Rcs()] != nullptr)
+  if (!pump.has_tooth_force() && outputs[layout.Rcs()] != nullptr)
     std::fill_n(outputs[layout.Rcs()], instants.count, not_computed());
   BatchKernel* const run = kernel(options.instruction_set).run;
   in_pieces(instants.count, options.threads,
@@ -254,20 +270,23 @@ BatchOutputs outputs_of(const ChannelLayout& layout, ChannelGroup group, BatchCo
 
 namespace {
 
-// Teeth rest where an iteration per instant says: Model has them.
-const PumpParameters& without_teeth(const PumpParameters& pump) {
+// Teeth rest, and walls of pistons push, where an iteration per instant says: Model has them.
+const PumpParameters& by_kernel(const PumpParameters& pump) {
   if (validate(pump).gear.contact == ToothContact::teeth)
     throw InputError(
         "batch: [gear] contact = \"teeth\": must be \"rigid\" or \"compliant\" in the evaluation "
         "of many instants at a time");
+  if (pump.transfer.kind == TransferKind::pistons)
+    throw InputError(
+        "batch: [transfer] kind = \"pistons\": must be of another kind in the evaluation of many "
+        "instants at a time: the block's lag is found instant by instant");
   return pump;
 }
 
 }  // namespace
 
 BatchModel::BatchModel(const PumpParameters& pump, const Assumptions& assumptions)
-    : layout_(without_teeth(pump).geometry.pistons),
-      pump_(std::make_unique<PreparedPump>(prepare(pump, assumptions))) {}
+    : layout_(by_kernel(pump)), pump_(std::make_unique<PreparedPump>(prepare(pump, assumptions))) {}
 BatchModel::~BatchModel() = default;
 BatchModel::BatchModel(BatchModel&&) noexcept = default;
 BatchModel& BatchModel::operator=(BatchModel&&) noexcept = default;
@@ -327,18 +346,20 @@ void BatchModel::statistics(const BatchInstants& instants, std::span<const Measu
     results[i].mean /= count;
     results[i].mean_square /= count;
     const std::size_t first = measured[i].reaction;
-    if (pump_->imposed && first <= layout_.Rcs() && layout_.Rcs() < first + measured[i].components)
+    if (!pump_->has_tooth_force() && first <= layout_.Rcs() &&
+        layout_.Rcs() < first + measured[i].components)
       results[i] = {not_computed(), not_computed(), not_computed(), not_computed()};
   }
 }
 
 void BatchModel::set_pump(const PumpParameters& pump, const Assumptions& assumptions) {
-  prepare(without_teeth(pump), assumptions, *pump_);
-  if (pump.geometry.pistons != layout_.pistons()) layout_ = ChannelLayout(pump.geometry.pistons);
+  prepare(by_kernel(pump), assumptions, *pump_);
+  if (pump.geometry.pistons != layout_.pistons() || pump.transfer.kind != layout_.transfer())
+    layout_ = ChannelLayout(pump);
 }
 
 PumpBatch::PumpBatch(const std::vector<PumpParameters>& pumps, const Assumptions& assumptions)
-    : layout_(pumps.empty() ? 1 : without_teeth(pumps.front()).geometry.pistons),
+    : layout_(pumps.empty() ? ChannelLayout(1) : ChannelLayout(by_kernel(pumps.front()))),
       size_(pumps.size()) {
   if (pumps.empty()) throw InputError("batch of pumps: empty");
   numbers_.resize(kNumbers * size_);
@@ -347,7 +368,7 @@ PumpBatch::PumpBatch(const std::vector<PumpParameters>& pumps, const Assumptions
       throw InputError("batch of pumps: pump " + std::to_string(i + 1) + " has " +
                        std::to_string(pumps[i].geometry.pistons) + " pistons, the first has " +
                        std::to_string(layout_.pistons()));
-    PreparedPump pump = prepare(without_teeth(pumps[i]), assumptions);
+    PreparedPump pump = prepare(by_kernel(pumps[i]), assumptions);
     double numbers[kNumbers];
     std::memcpy(numbers, &pump.numbers, sizeof numbers);
     for (std::size_t n = 0; n < kNumbers; ++n) numbers_[n * size_ + i] = numbers[n];

@@ -19,6 +19,8 @@ constexpr std::size_t kDoublesPerLine = 64 / sizeof(double);
 constexpr std::size_t kMaxReactions = 5 * kMaxPistons + 12;
 template <template <class> class Turning>
 inline constexpr bool kFree = std::is_same_v<Turning<double>, closed_form::FreeState<double>>;
+template <template <class> class Turning>
+inline constexpr bool kCardan = std::is_same_v<Turning<double>, closed_form::CardanState<double>>;
 
 template <class Real>
 struct Lanes {
@@ -46,7 +48,7 @@ struct Lanes {
 };
 
 // `used` lanes from instant `at` on; results to put(column, value). Turning: State of one lane, or
-// FreeState where the block moves on its own.
+// FreeState where the block moves on its own, JointState or CardanState where a joint turns it.
 template <class Real, template <class> class Turning, class Par, class Put>
 BENTAXIS_INLINE void evaluate_lanes(const BatchJob& job, const closed_form::Pump<Par>& pump,
                                     std::size_t at, std::size_t used, const Put& put) {
@@ -65,6 +67,7 @@ BENTAXIS_INLINE void evaluate_lanes(const BatchJob& job, const closed_form::Pump
     state.block_omega = L::load(job.block_omega, at, used);
     state.block_omega_dot = L::load(job.block_omega_dot, at, used);
   }
+  if constexpr (kCardan<Turning>) closed_form::turn_block(pump.joint, state);
   closed_form::reactions<Real>(
       job.common, pump, state, job.bodies,
       [&](int k) { return L::load(job.chamber_pressure[k], at, used); }, put);
@@ -152,8 +155,9 @@ BENTAXIS_INLINE std::size_t stream_lines(const BatchJob& job, std::size_t at, st
     }
   } else {
     const int reactions = kReactionsEnd.per_piston * job.common.pistons + kReactionsEnd.single;
-    const int absent =
-        job.common.imposed ? closed_form::column<Quantity::Rcs>(job.common.pistons, 0, 0) : -1;
+    const int absent = job.common.imposed || job.common.transfer != TransferKind::gear
+                           ? closed_form::column<Quantity::Rcs>(job.common.pistons, 0, 0)
+                           : -1;
     alignas(64) double lines[kMaxReactions][kDoublesPerLine];
     for (; at + kDoublesPerLine <= end; at += kDoublesPerLine) {
       for (std::size_t part = 0; part < kDoublesPerLine; part += kLanes) {
@@ -188,10 +192,16 @@ template <class Real, template <class> class Turning>
 
 template <class Real>
 void run_batch(const BatchJob& job, std::size_t begin, std::size_t end) {
-  if (job.free)
-    run_turning<Real, closed_form::FreeState>(job, begin, end);
-  else
-    run_turning<Real, closed_form::State>(job, begin, end);
+  switch (job.block) {
+    case BatchJob::Block::free:
+      return run_turning<Real, closed_form::FreeState>(job, begin, end);
+    case BatchJob::Block::joint:
+      return run_turning<Real, closed_form::JointState>(job, begin, end);
+    case BatchJob::Block::cardan:
+      return run_turning<Real, closed_form::CardanState>(job, begin, end);
+    case BatchJob::Block::locked:
+      return run_turning<Real, closed_form::State>(job, begin, end);
+  }
 }
 
 // Sums and extremes, lane by lane.
@@ -284,10 +294,19 @@ void tally_batch(const BatchJob& job, const BatchTally& tally, std::size_t begin
   const Tally<Real> none = {Real(0.0), Real(0.0), Real(kNothing), Real(-kNothing)};
   for (std::size_t i = 0; i < tally.measured.size(); ++i)
     none.store(tally.lanes + i * kTallied * kMaxLanes);
-  if (job.free)
-    tally_turning<Real, closed_form::FreeState>(job, tally, begin, end);
-  else
-    tally_turning<Real, closed_form::State>(job, tally, begin, end);
+  switch (job.block) {
+    case BatchJob::Block::free:
+      tally_turning<Real, closed_form::FreeState>(job, tally, begin, end);
+      break;
+    case BatchJob::Block::joint:
+      tally_turning<Real, closed_form::JointState>(job, tally, begin, end);
+      break;
+    case BatchJob::Block::cardan:
+      tally_turning<Real, closed_form::CardanState>(job, tally, begin, end);
+      break;
+    case BatchJob::Block::locked:
+      tally_turning<Real, closed_form::State>(job, tally, begin, end);
+  }
   for (std::size_t i = 0; i < tally.measured.size(); ++i) {
     const double* const lanes = tally.lanes + i * kTallied * kMaxLanes;
     double sum = 0, squares = 0, low = kNothing, high = -kNothing;

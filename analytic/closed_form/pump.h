@@ -6,9 +6,11 @@
 #include "closed_form/frame.h"
 #include "closed_form/friction.h"
 #include "closed_form/gear.h"
+#include "closed_form/joint.h"
 #include "closed_form/piston.h"
 #include "closed_form/shaft.h"
 #include "closed_form/state.h"
+#include "closed_form/wall.h"
 
 namespace bentaxis::analytic::closed_form {
 
@@ -23,6 +25,8 @@ struct Pump {
   FilmNumbers<T> film;
   GearNumbers<T> gear;
   ShaftNumbers<T> shaft;
+  JointNumbers<T> joint;
+  WallNumbers<T> wall;
 };
 
 /// What all pumps of a batch have in common.
@@ -32,6 +36,10 @@ struct Common {
   const double* phase_cos = nullptr;
   bool imposed = false;  ///< block speed imposed: no tooth force
   FrictionLaw friction;
+  TransferKind transfer = TransferKind::gear;
+  /// First columns of what the transfer carries, beyond the reactions that every pump has; -1: not
+  /// asked for.
+  int couple_column = -1, wall_column = -1, block_torque_column = -1;
 };
 
 }  // namespace bentaxis::analytic::closed_form

@@ -31,6 +31,12 @@ struct RawPump {
     T pitch_diameter, pressure_angle;
   } gear;
   struct {
+    T phase;
+    struct {
+      T from_joint, clearance, stiffness, exponent, dissipation;
+    } wall;
+  } transfer;
+  struct {
     T tapered_z, cylindrical_z;
   } bearings;
   struct {
@@ -80,9 +86,16 @@ inline RawPlate<double> raw(const PortPlate& p) {
 
 inline RawPump<double> raw(const PumpParameters& p) {
   const PistonMass::Real real = p.piston.real.value_or(PistonMass::Real());
+  const WallContact wall = p.transfer.wall.value_or(WallContact());
   return {
       .geometry = raw(p.geometry),
       .gear = {.pitch_diameter = p.gear.pitch_diameter, .pressure_angle = p.gear.pressure_angle},
+      .transfer = {.phase = p.transfer.cardan.value_or(CardanJoint()).phase,
+                   .wall = {.from_joint = wall.from_joint,
+                            .clearance = wall.clearance,
+                            .stiffness = wall.stiffness,
+                            .exponent = wall.exponent,
+                            .dissipation = wall.dissipation}},
       .bearings = {.tapered_z = p.bearings.tapered_z, .cylindrical_z = p.bearings.cylindrical_z},
       .piston = {.mass = p.piston.mass,
                  .joint_mass_fraction = p.piston.joint_mass_fraction,

@@ -3,32 +3,21 @@
 // This file composes the pieces that lie beside it. Equation numbers: Roccatello & Nervegna (2009).
 #pragma once
 
+#include <type_traits>
+
 #include "bentaxis/results/quantities.h"
 #include "closed_form/pump.h"
+#include "closed_form/transfer.h"
 
 namespace bentaxis::analytic::closed_form {
-
-/// Column of a quantity in a row of results; fixed when compiled but for the number of pistons.
-template <Quantity quantity>
-BENTAXIS_INLINE int column(int pistons, int piston, int component) {
-  constexpr QuantityPlace kHere = quantity_place(static_cast<std::size_t>(quantity));
-  return kHere.per_piston * pistons + kHere.single + kHere.stride * piston + component;
-}
-
-/// Gives put() the components of a quantity.
-template <Quantity quantity, class Put, class... Real>
-BENTAXIS_INLINE void put_all(const Put& put, int pistons, int piston, const Real&... values) {
-  static_assert(sizeof...(values) == quantity_place(static_cast<std::size_t>(quantity)).components);
-  int component = 0;
-  (put(column<quantity>(pistons, piston, component++), values), ...);
-}
 
 /// All reactions at an instant: pistons (31)-(33), block (56), (57), shaft (42), (43).
 /// @param pressure  pressure(k): of chamber k
 /// @param put       put(column, value): result, in the columns of ChannelLayout; Rcs is not put
 ///                  where the block speed is imposed
 /// @param bodies    false: pistons only
-/// @param t         State, or FreeState of a block that moves on its own
+/// @param t         what the transfer constrains: State of a block that a gear locks to the shaft,
+///                  FreeState of one that moves on its own, JointState, CardanState, or WallState
 template <class Real, class Par, class Turning, class Pressure, class Put>
 BENTAXIS_INLINE void reactions(const Common& common, const Pump<Par>& p, const Turning& t,
                                bool bodies, const Pressure& pressure, const Put& put) {
@@ -46,8 +35,16 @@ BENTAXIS_INLINE void reactions(const Common& common, const Pump<Par>& p, const T
     const PistonMotion<Real> m = piston_motion(p.frame, p.piston, t, s, c);
     const Real friction =
         friction_force(common.friction, p.friction, m.ring_velocity(t.rate()), t.omega);
-    const PistonForces<Real> f =
-        piston_forces(p.piston, m, t.rate(), t.rate_dot(), friction, chamber);
+    PistonForces<Real> f = piston_forces(p.piston, m, t.rate(), t.rate_dot(), friction, chamber);
+    if constexpr (std::is_same_v<Turning, WallState<Real>>) {
+      const WallApproach<Real> at = wall_approach(p.wall, m);
+      const Real wall = wall_force(p.wall, at, t.mode(k));
+      if (common.wall_column >= 0) {
+        put(common.wall_column + 2 * k, wall * at.x);
+        put(common.wall_column + 2 * k + 1, wall * at.y);
+      }
+      add_wall(p.wall, m, wall * at.x, wall * at.y, f, on_block);
+    }
     put_all<Q::Rs>(put, n, k, f.rs.x, f.rs.y, f.rs.z);
     put_all<Q::Rc>(put, n, k, f.rc_x, f.rc_y);
     if (!bodies) continue;
@@ -58,22 +55,13 @@ BENTAXIS_INLINE void reactions(const Common& common, const Pump<Par>& p, const T
 
   BlockBalance<Real> balance = block_balance(p.block, on_block);
   add_lands(p.film, t.delivery, t.suction, balance);
-  Real tooth = zero;  // on the block, positive towards +psi
-  if (!common.imposed) {
-    tooth = carrying_torque(p.block, on_block, t.block_speed(), t.block_acceleration()) *
-            p.gear.inverse_arm;
-    put_all<Q::Rcs>(put, n, 0, Math<Real>::direction(t.omega) * tooth);
-    const ToothForce<Real> carried = tooth_on_block(p.gear, tooth);
-    balance.force = balance.force + carried.force;
-    balance.moment_x = balance.moment_x + carried.moment.x;
-    balance.moment_y = balance.moment_y + carried.moment.y;
-  }
+  const auto carried = carry<Real>(common, p, t, on_block, balance, put);
   const BlockReactions<Real> block = hold_block(p.block, balance);
   put_all<Q::Fh>(put, n, 0, block.fh);
   put_all<Q::Th>(put, n, 0, block.th_x, block.th_y);
   put_all<Q::Rcn>(put, n, 0, block.pin_x, block.pin_y);
 
-  const ToothForce<Real> carrying = tooth_on_shaft(p.gear, tooth);
+  const ToothForce<Real> carrying = carried.on_shaft(p);
   const BearingForces<Real> held = hold_shaft(p.frame, p.shaft, on_shaft, carrying);
   put_all<Q::Rb1>(put, n, 0, held.tapered.x, held.tapered.y, held.tapered.z);
   put_all<Q::Rb2>(put, n, 0, held.cylindrical_x, held.cylindrical_y);

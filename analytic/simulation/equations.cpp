@@ -49,13 +49,20 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
       assumptions_(assumptions),
       ring_off_(the_case.pump.piston.contact.has_value()),
       law_(closed_form::tooth_law(the_case.pump.gear)),
-      arm_(the_case.pump.gear.pitch_diameter / 2 * std::cos(the_case.pump.gear.pressure_angle)),
+      arm_(the_case.pump.transfer.kind == TransferKind::gear
+               ? the_case.pump.gear.pitch_diameter / 2 * std::cos(the_case.pump.gear.pressure_angle)
+               : 1),
       curve_(curve_of(drive_)) {
   if (assumptions.gear == BlockDrive::imposed)
     throw InputError(
         "gear = \"imposed\": must be \"mesh\" in a simulation, in which the shaft drives the "
         "block");
   if (the_case.pump.gear.contact == ToothContact::rigid) law_.reset();
+  if (the_case.pump.transfer.kind == TransferKind::pistons) {
+    walls_.emplace(the_case.pump, assumptions);
+    wall_modes.assign(static_cast<std::size_t>(the_case.pump.geometry.pistons),
+                      closed_form::WallMode::by_law);
+  }
   if (the_case.pump.gear.contact == ToothContact::teeth) {
     bevel_.emplace(the_case.pump);
     at_o4_.emplace(with_flanks(the_case.pump), assumptions);
@@ -90,7 +97,10 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
   if (drive_.kind != DriveKind::speed && !(shaft_inertia_ > kMinInertia))
     throw InputError("[shaft] axial_inertia_kg_mm2: must be > 0 where a torque drives the shaft");
   if (compliant() && !(block_inertia_ > kMinInertia))
-    throw InputError("[block] axial_inertia_kg_mm2: must be > 0 where the teeth are compliant");
+    throw InputError(walls_
+                         ? "[block] axial_inertia_kg_mm2: must be > 0 where pistons carry the block"
+                         : "[block] axial_inertia_kg_mm2: must be > 0 where the teeth are "
+                           "compliant");
   probe_ = torque_scale_ / std::max(shaft_inertia_, kMinInertia);
 }
 
@@ -99,7 +109,9 @@ Equations::Response Equations::respond(const Model& model, double shaft_accelera
   ++evaluations_;
   instant_.shaft.acceleration = shaft_acceleration;
   instant_.block.acceleration = block_acceleration;
-  model.reactions(instant_, values_);
+  model.reactions_held(instant_, values_, walls_ ? wall_modes.data() : nullptr);
+  if (walls_) return {values_[model.layout().Td()], values_[model.layout().Tb()]};
+  if (!law_ && !bevel_ && pump_.transfer.is_joint()) return {values_[model.layout().Td()], 0};
   const double tooth = values_[model.layout().Rcs()];
   return {values_[model.layout().Td()], instant_.shaft.speed < 0 ? -tooth : tooth};
 }
@@ -117,8 +129,27 @@ AxisMotion Equations::shaft(double time, const State& y) const {
   return {omega_ * time, omega_, 0};
 }
 
+// A joint's block follows from the shaft.
+AxisMotion Equations::block(const AxisMotion& shaft, const State& y) const {
+  if (pump_.transfer.is_joint()) return model_.block_motion(shaft);
+  return {shaft.angle - y[kLag], shaft.speed - y[kLagRate], shaft.acceleration};
+}
+
 double Equations::block_angle(double time, const State& y) const {
-  return shaft(time, y).angle - y[kLag];
+  return block(shaft(time, y), y).angle;
+}
+
+double Equations::block_speed(double time, const State& y) const {
+  return block(shaft(time, y), y).speed;
+}
+
+const std::vector<WallPath>& Equations::wall_paths(double time, const State& y) {
+  const AxisMotion shaft_was = instant_.shaft, block_was = instant_.block;
+  set_speeds(time, y);
+  instant_.shaft.acceleration = shaft_was.acceleration;
+  instant_.block.acceleration = block_was.acceleration;
+  walls_->find(instant_, paths_);
+  return paths_;
 }
 
 State Equations::start(const SimulationOptions& options) const {
@@ -151,6 +182,8 @@ State Equations::scales() const {
           kToothApproach *
           std::pow(tooth_scale_ / (law_->stiffness * kToothApproach), 1 / law_->exponent);
       stiffness = law_->exponent * tooth_scale_ / approach * arm_ * arm_;
+    } else if (walls_) {
+      stiffness = walls_->torsional_stiffness(tooth_scale_);
     } else {
       stiffness = bevel_->stiffness() * arm_ * arm_;
     }
@@ -179,9 +212,8 @@ std::vector<double> Equations::knots() const {
 
 void Equations::set_speeds(double time, const State& y) {
   instant_.shaft = shaft(time, y);
-  instant_.block = instant_.shaft;
-  instant_.block.angle -= y[kLag];
-  instant_.block.speed -= y[kLagRate];
+  instant_.block = block(instant_.shaft, y);
+  if (walls_) instant_.lag = ToothLag{y[kLag], y[kLagRate]};
 }
 
 void Equations::set_pressures(double block_angle) {
@@ -315,6 +347,7 @@ Motion Equations::accelerate(double time, const State& y) {
   instant_.shaft.acceleration = shaft;
   instant_.block.acceleration = block;
   if (speed_given && !compliant()) m.drive_torque = respond(model_, shaft, block).drive_torque;
+  if (pump_.transfer.is_joint()) instant_.block = model_.block_motion(instant_.shaft);
   m.shaft = instant_.shaft;
   m.block = instant_.block;
   return m;
@@ -355,6 +388,19 @@ void Equations::add_rates(const State& y, const Motion& m, State& dy) {
     dy[kImpulse] = std::abs(m.tooth_force);
   }
   if (bevel_) loads += m.shaft_moment * shaft_speed + m.tooth_force * arm_ * m.block.speed;
+  if (walls_) {
+    // What the walls take in beyond what their springs hold.
+    walls_->find(instant_, paths_);
+    for (std::size_t k = 0; k < paths_.size(); ++k) {
+      const auto [distance, rate, rate_dot] = paths_[k];
+      if (!(distance > 0)) continue;
+      const double spring = walls_->spring(distance);
+      const bool pushes =
+          wall_modes[k] == closed_form::WallMode::pressing ||
+          (wall_modes[k] == closed_form::WallMode::by_law && 1 + walls_->dissipation() * rate > 0);
+      loads -= ((pushes ? spring * (1 + walls_->dissipation() * rate) : 0.0) - spring) * rate;
+    }
+  }
   if (law_) {
     // What the flanks take in beyond what their springs hold.
     for (const int flank : {1, -1}) {
@@ -382,9 +428,12 @@ void Equations::row(double time, const State& y, const Motion& m, std::vector<do
                     std::vector<double>& row, MotionChecks& checks) const {
   row.assign(model_.layout().size(), not_computed());
   model_.evaluate(instant_, row, &checks);
+  // The motion is free: nothing acts on the block from outside.
+  if (walls_) row[model_.layout().Tb()] = not_computed();
   // By the lag's own digits.
   if (law_ || bevel_) checks.tooth_law = m.tooth_force;
-  state = {time, m.shaft.angle / kRadPerDegree, (m.shaft.angle - y[kLag]) / kRadPerDegree,
+  const double psi = pump_.transfer.is_joint() ? m.block.angle : m.shaft.angle - y[kLag];
+  state = {time, m.shaft.angle / kRadPerDegree, psi / kRadPerDegree,
            m.shaft.speed / kRadPerSecondPerRpm, m.block.speed / kRadPerSecondPerRpm};
   if (drive_.kind == DriveKind::motor)
     state.push_back((m.shaft.speed + y[kTwistRate]) / kRadPerSecondPerRpm);
@@ -404,13 +453,24 @@ double Equations::kinetic_energy(double time, const State& y) {
   // on both.
   const double mixed = arm_ * (by_shaft.tooth_force - still.tooth_force);
   const double block = arm_ * (by_block.tooth_force - still.tooth_force);
-  const double shaft = torque_factor_ * (by_shaft.drive_torque - still.drive_torque) - mixed;
+  // A gear's force acts on both bodies; a joint's block has no motion of its own.
+  const double of_gear = pump_.transfer.kind == TransferKind::gear ? mixed : 0.0;
+  const double shaft = torque_factor_ * (by_shaft.drive_torque - still.drive_torque) - of_gear;
   const double theta = instant_.shaft.speed;
   const double psi = instant_.block.speed;
   double energy =
       (shaft * theta * theta + 2 * mixed * theta * psi + block * psi * psi) / 2 / probe_;
   if (drive_.kind == DriveKind::motor)
     energy += drive_.motor->rotor_inertia * std::pow(theta + y[kTwistRate], 2) / 2;
+  return energy;
+}
+
+double Equations::wall_energy(double time, const State& y) {
+  double energy = 0;
+  if (walls_)
+    for (const WallPath& path : wall_paths(time, y))
+      if (path.distance > 0)
+        energy += walls_->spring(path.distance) * path.distance / (walls_->exponent() + 1);
   return energy;
 }
 

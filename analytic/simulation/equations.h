@@ -13,6 +13,7 @@
 #include "bentaxis/results/mechanics.h"
 #include "closed_form/gear.h"
 #include "simulation/loads.h"
+#include "simulation/walls.h"
 
 namespace bentaxis::analytic::simulation {
 
@@ -42,7 +43,9 @@ class Equations {
   const DriveSpec& drive() const { return drive_; }
   /// From now on these act from outside.
   void surround(const Surroundings& outside);
-  bool compliant() const { return law_ || bevel_; }
+  /// Whether the block has a motion of its own.
+  bool compliant() const { return law_ || bevel_ || walls_; }
+  const std::optional<Walls>& walls() const { return walls_; }
   const closed_form::ToothLaw& law() const { return *law_; }
   long evaluations() const { return evaluations_; }
 
@@ -55,6 +58,7 @@ class Equations {
 
   // The piece of the motion that rates() follows.
   Teeth teeth;
+  std::vector<closed_form::WallMode> wall_modes;  ///< of pistons that carry the block
   double from_angle = 0, to_angle = 0;  ///< rad, of psi: pressures are those of this interval
   /// rad: so near to an end of the interval the block stands on it, but for rounding.
   static constexpr double kAtEdge = 1e-12;
@@ -67,7 +71,11 @@ class Equations {
   /// The same of bevel teeth, the largest of any pair and slice.
   BevelTeeth::Approach approach_of_teeth(double time, const State& y, int flank) const;
   const std::optional<BevelTeeth>& bevel() const { return bevel_; }
+  /// Of the walls, with the accelerations of the motion that was found last.
+  const std::vector<WallPath>& wall_paths(double time, const State& y);
+  AxisMotion block(const AxisMotion& shaft, const State& y) const;
   double block_angle(double time, const State& y) const;
+  double block_speed(double time, const State& y) const;
   AxisMotion shaft(double time, const State& y) const;
   double speed(double time, const State& y) const { return shaft(time, y).speed; }
 
@@ -94,6 +102,7 @@ class Equations {
   /// Of all bodies and of the rotor, J; of the teeth and the coupling, J.
   double kinetic_energy(double time, const State& y);
   double potential_energy(const State& y) const;
+  double wall_energy(double time, const State& y);  ///< of the walls, J
 
  private:
   struct Response {
@@ -129,7 +138,9 @@ class Equations {
   std::optional<BodyLoads> body_loads_;  // made where they are asked for
   bool ring_off_;  // rings act off B, and do work on the play of their pistons
   std::optional<closed_form::ToothLaw> law_;
-  double arm_;
+  std::optional<Walls> walls_;
+  std::vector<WallPath> paths_;
+  double arm_;  // of a tooth force; 1 where pistons carry the block, whose torque is asked for
   std::optional<TimeSignal> curve_;
   Surroundings outside_;
   double probe_ = 1;  // rad/s2, for differences of responses

@@ -14,7 +14,7 @@ namespace {
 template <class Use>
 void for_each_piston(const PreparedPump& pump, const Instant& instant, const Use& use) {
   const closed_form::Pump<double>& p = pump.numbers;
-  with_state<double>(instant, [&](const auto& state) {
+  with_state<double>(pump.transfer, p, instant, [&](const auto& state) {
     for (std::size_t k = 0; k < pump.phase_sin.size(); ++k) {
       const double sine = pump.phase_sin[k], cosine = pump.phase_cos[k];
       use(closed_form::piston_motion(p.frame, p.piston, state,

@@ -25,6 +25,10 @@ class ClosedForm : public Mechanics {
   ClosedForm(const Case& the_case, const Assumptions& assumptions)
       : pressure_(port_pressures(the_case)), equations_(the_case, assumptions, pressure_) {
     require_smooth_friction(the_case);
+    if (the_case.pump.transfer.kind == TransferKind::pistons)
+      throw InputError(
+          "[transfer] kind = \"pistons\": must be of another kind where oil or another program is "
+          "integrated with the motion: the touches of the pistons are not followed there yet");
   }
 
   const ChannelLayout& layout() const override { return equations_.model().layout(); }
@@ -40,10 +44,7 @@ class ClosedForm : public Mechanics {
     return equations_.shaft(time, y);
   }
   AxisMotion block(double time, const MotionVector& y) const override {
-    AxisMotion motion = equations_.shaft(time, y);
-    motion.angle -= y[kLag];
-    motion.speed -= y[kLagRate];
-    return motion;
+    return equations_.block(equations_.shaft(time, y), y);
   }
   double approach(double time, const MotionVector& y, int flank) const override {
     return equations_.bevel() ? equations_.approach_of_teeth(time, y, flank).distance

@@ -16,6 +16,8 @@ namespace bentaxis::analytic {
 namespace simulation {
 namespace {
 
+using closed_form::WallMode;
+
 // Tolerance of a step, of the scales of the states, for a wanted error of the reactions: what
 // remains is for the growth of errors over the motion.
 constexpr double kStepShare = 1e-3;
@@ -28,6 +30,8 @@ constexpr long kMaxEvaluations = 100000000;  // of the closed form: some minutes
 constexpr int kMaxEventsAtOnce = 64;         // without a step between them
 constexpr double kOnTouch = 1e-15;           // m: as good as touching
 constexpr double kOnEdge = 1e-15;            // of the angle and a turn
+constexpr double kOnWall = 2e-17;            // m: a stiff wall gives 2 nN there
+constexpr std::size_t kMaxEvents = 1000000;  // of contact
 
 // One extrapolated step of scaled states; `h` becomes what the method would take next.
 class Stepper {
@@ -119,9 +123,10 @@ class Simulation {
     y_ = equations_.start(options_);
     start_piece();
     start_teeth();
+    if (equations_.walls()) start_walls();
     if (equations_.teeth.pressing != 0) contact_changes(0, equations_.teeth.pressing);
     kinetic_ = equations_.kinetic_energy(0, y_);
-    potential_ = equations_.potential_energy(y_);
+    potential_ = potential_energy();
     const std::vector<double> stops =
         options_.times.empty() ? trajectory_times(drive) : options_.times;
     const std::size_t rows = stops.size();
@@ -200,7 +205,7 @@ class Simulation {
   void start_teeth() {
     Teeth& teeth = equations_.teeth;
     teeth = {};
-    if (!equations_.compliant()) return;
+    if (!equations_.compliant() || equations_.walls()) return;
     State dy;
     for (const int flank : {1, -1}) {
       const double x = equations_.approach(y_, flank);
@@ -219,14 +224,53 @@ class Simulation {
     }
   }
 
+  // How every piston stands to its wall from here on.
+  void start_walls() {
+    auto& modes = equations_.wall_modes;
+    std::fill(modes.begin(), modes.end(), WallMode::away);
+    State dy;
+    equations_.rates(time_, y_, dy);
+    const std::vector<WallPath>& paths = equations_.wall_paths(time_, y_);
+    for (std::size_t k = 0; k < paths.size(); ++k) {
+      const WallPath& path = paths[k];
+      if (path.distance > kOnTouch || (path.distance >= -kOnTouch && path.rate > 0))
+        if (1 + equations_.walls()->dissipation() * path.rate > 0) {
+          modes[k] = WallMode::pressing;
+          wall_changes(k, true, path.rate);
+        }
+    }
+    inside_.assign(modes.size(), false);
+    for (std::size_t k = 0; k < modes.size(); ++k)
+      inside_[k] = modes[k] == WallMode::pressing || paths[k].distance > kOnTouch;
+  }
+
   struct EventFunctions {
-    std::array<EventFunction, 4> all;
+    // The two ends of an interval; of the teeth or of each wall two more.
+    std::array<EventFunction, 2 + 2 * kMaxPistons> all;
     std::size_t count = 0;
     void add(double value, double rate) { all[count++] = {value, rate}; }
   };
 
+  // Of each piston two: touching or leaving its wall, and the end or start of its push within. To
+  // be asked for right after the rates there.
+  void add_wall_functions(double time, const State& y, EventFunctions& g) {
+    const double dissipation = equations_.walls()->dissipation();
+    const std::vector<WallPath>& paths = equations_.wall_paths(time, y);
+    for (std::size_t k = 0; k < paths.size(); ++k) {
+      const WallPath& path = paths[k];
+      if (!inside_[k]) {
+        g.add(path.distance, path.rate);
+        g.add(-1, 0);
+        continue;
+      }
+      g.add(-path.distance, -path.rate);
+      const int sign = equations_.wall_modes[k] == WallMode::pressing ? -1 : 1;
+      g.add(sign * (1 + dissipation * path.rate), sign * dissipation * path.rate_dot);
+    }
+  }
+
   // In an order that handle() knows: the interval's two ends, then the teeth.
-  EventFunctions event_functions(double time, const State& y, const State& dy) const {
+  EventFunctions event_functions(double time, const State& y, const State& dy) {
     EventFunctions g;
     const double psi = equations_.block_angle(time, y);
     const Equations& e = equations_;
@@ -234,6 +278,10 @@ class Simulation {
     g.add(psi - e.to_angle, psi_rate);
     g.add(e.from_angle - psi, -psi_rate);
     if (!e.compliant()) return g;
+    if (e.walls()) {
+      add_wall_functions(time, y, g);
+      return g;
+    }
     const int within = e.teeth.pressing + e.teeth.idle;
     if (within == 0) {
       g.add(e.approach(y, 1), e.approach_rate(y, 1));
@@ -250,12 +298,12 @@ class Simulation {
     return g;
   }
 
-  double block_speed(double time, const State& y) const {
-    return equations_.speed(time, y) - y[kLagRate];
-  }
+  double block_speed(double time, const State& y) const { return equations_.block_speed(time, y); }
 
   double nearness(std::size_t guard, double time) const {
     if (guard < 2) return kOnEdge * (std::abs(equations_.block_angle(time, y_)) + 2 * kPi);
+    // A wall's approach is a difference of lengths of some centimetres.
+    if (equations_.walls()) return guard % 2 == 1 ? 1e-12 : kOnWall;
     return guard == 3 && equations_.teeth.pressing + equations_.teeth.idle != 0 ? 1e-12 : kOnTouch;
   }
 
@@ -330,7 +378,7 @@ class Simulation {
       next_ = std::max(next_, free_proposal);
     else
       next_ = free_proposal;
-    if (equations_.compliant() && equations_.teeth.pressing == 0) apart_ += taken;
+    if (equations_.compliant() && is_apart()) apart_ += taken;
     time_ = taken == stop - time_ ? stop : time_ + taken;
     y_ = out;
     if (taken > smallest_step())
@@ -341,6 +389,17 @@ class Simulation {
       handle(event);
       note_piece();
     }
+  }
+
+  double potential_energy() {
+    return equations_.potential_energy(y_) + equations_.wall_energy(time_, y_);
+  }
+
+  bool is_apart() const {
+    const auto& modes = equations_.wall_modes;
+    return equations_.walls()
+               ? std::find(modes.begin(), modes.end(), WallMode::pressing) == modes.end()
+               : equations_.teeth.pressing == 0;
   }
 
   void note_piece() {
@@ -371,6 +430,10 @@ class Simulation {
       set_piece();
       return;
     }
+    if (equations_.walls()) {
+      change_wall((guard - 2) / 2, guard % 2 == 0);
+      return;
+    }
     const Teeth was = equations_.teeth;
     const int within = was.pressing + was.idle;
     Teeth& teeth = equations_.teeth;
@@ -389,8 +452,33 @@ class Simulation {
     if (was.pressing != teeth.pressing) contact_changes(was.pressing, teeth.pressing);
   }
 
+  // A piston passes the end of contact, or its push ends or starts within.
+  void change_wall(std::size_t piston, bool passes) {
+    const WallPath path = equations_.wall_paths(time_, y_)[piston];
+    WallMode& mode = equations_.wall_modes[piston];
+    const bool pressed = mode == WallMode::pressing;
+    if (passes) inside_[piston] = !inside_[piston];
+    const bool pushes = inside_[piston] &&
+                        (passes ? 1 + equations_.walls()->dissipation() * path.rate > 0 : !pressed);
+    mode = pushes ? WallMode::pressing : WallMode::away;
+    if (pushes != pressed) wall_changes(piston, pushes, path.rate);
+  }
+
+  void wall_changes(std::size_t piston, bool touch, double approach_speed) {
+    if (record_.events.size() >= kMaxEvents)
+      fail("after " + std::to_string(kMaxEvents) + " touches of the pistons");
+    ToothEvent event;
+    event.time_s = time_;
+    event.touch = touch;
+    event.flank = y_[kLag] < 0 ? -1 : 1;
+    event.piston = static_cast<int>(piston) + 1;
+    event.shaft_speed = equations_.speed(time_, y_);
+    event.block_speed = block_speed(time_, y_);
+    event.approach_speed = approach_speed;
+    record_.events.push_back(event);
+  }
+
   void contact_changes(int from, int to) {
-    constexpr std::size_t kMaxEvents = 1000000;
     if (record_.events.size() >= kMaxEvents)
       fail("after " + std::to_string(kMaxEvents) + " touches of the teeth");
     if (from != 0) close_contact();
@@ -427,7 +515,7 @@ class Simulation {
     record_.work_of_loads = y_[kWorkOfLoads];
     record_.work_of_drives = y_[kWorkOfDrive];
     record_.kinetic_energy_gained = equations_.kinetic_energy(time_, y_) - kinetic_;
-    record_.potential_energy_gained = equations_.potential_energy(y_) - potential_;
+    record_.potential_energy_gained = potential_energy() - potential_;
     record_.work_residual = record_.work_of_loads + record_.work_of_drives -
                             record_.kinetic_energy_gained - record_.potential_energy_gained;
     update_max_abs(record_.worst_work_residual, record_.work_residual);
@@ -448,6 +536,7 @@ class Simulation {
   State y_ = {};
   int at_once_ = 0;
   std::size_t touch_ = kNone;
+  std::vector<bool> inside_;  // which pistons are within their walls
   TrajectoryRecord record_;
 };
 

@@ -131,7 +131,7 @@ class CaseReader {
   }
 
   void read_key(TableReader& in, const Table& table, const Parameter& parameter) {
-    const bool active = is_active(table, parameter, registry_, result_);
+    const bool active = is_asked_for(parameter, registry_, result_);
     if (!in.has(parameter.key)) {
       if (!active) return;
       if (!default_of(parameter, result_)) look_for_other_word(in, table, parameter);

@@ -49,7 +49,7 @@ std::string case_text(const Case& the_case, const Registry& registry) {
     if (table.part != nullptr && !table.part->exists(the_case)) continue;
     if (!table.name.empty()) text += "\n[" + table.name + "]\n";
     for (const Parameter& parameter : table.parameters) {
-      if (!is_active(table, parameter, registry, the_case)) continue;
+      if (!is_asked_for(parameter, registry, the_case)) continue;
       if (const auto value = value_to_write(parameter, the_case))
         text += parameter.key + " = " + toml_value(*value) + "\n";
     }

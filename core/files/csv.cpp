@@ -18,6 +18,7 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/pump/words.h"
+#include "bentaxis/results/joint.h"
 #include "bentaxis/results/result_table.h"
 
 namespace bentaxis {
@@ -342,7 +343,11 @@ States states_of(const NumericTable& table, const std::filesystem::path& file,
   const auto require = [&](const std::string& name) {
     if (!has(name)) throw InputError(head + ": column \"" + name + "\" is missing");
   };
-  for (const char* const name : kMotionColumns) require(name);
+  // A joint says how the block moves: its columns may be left out, all of them.
+  const bool joint = the_case.pump.transfer.is_joint();
+  const bool block_given = !joint || has("psi_deg") || has("psi_rpm") || has("psi_rad_per_s2");
+  for (const char* const name : kMotionColumns)
+    if (block_given || std::string(name).rfind("psi_", 0) != 0) require(name);
   const bool pressures = has(chamber(0));
   for (int k = 0; k < pistons; ++k)
     if (has(chamber(k)) || pressures) {
@@ -366,18 +371,46 @@ States states_of(const NumericTable& table, const std::filesystem::path& file,
     }
     MotionState state;
     state.theta_deg = at("theta_deg");
-    state.psi_deg = at("psi_deg");
     state.shaft_speed = rad_per_second(at("theta_rpm"));
-    state.block_speed = rad_per_second(at("psi_rpm"));
     state.shaft_acceleration = at("theta_rad_per_s2");
-    state.block_acceleration = at("psi_rad_per_s2");
+    if (block_given) {
+      state.psi_deg = at("psi_deg");
+      state.block_speed = rad_per_second(at("psi_rpm"));
+      state.block_acceleration = at("psi_rad_per_s2");
+    }
+    if (joint) {
+      // The lead alone keeps its digits over many turns.
+      const double turned = std::fmod(state.theta_deg, 360.0);
+      const AxisMotion block = joint_motion(
+          the_case.pump, {radians(turned), state.shaft_speed, state.shaft_acceleration});
+      MotionState law = state;
+      law.psi_deg = the_case.pump.transfer.kind == TransferKind::cardan
+                        ? state.theta_deg + (block.angle - radians(turned)) / kRadPerDegree
+                        : state.theta_deg;
+      law.block_speed = block.speed;
+      law.block_acceleration = block.acceleration;
+      constexpr double kMatch = 1e-9;  // deg, and of the shaft's rates
+      const auto hold = [&](const char* name, double given, double wanted, double unit,
+                            double tolerance) {
+        if (block_given && !(std::abs(given - wanted) <= tolerance))
+          refuse_value(file, table, i, columns.at(name),
+                       number_text(wanted / unit) + ", as [transfer] kind = \"" +
+                           to_string(the_case.pump.transfer.kind) + "\" turns the block");
+      };
+      hold("psi_deg", state.psi_deg, law.psi_deg, 1, kMatch);
+      hold("psi_rpm", state.block_speed, law.block_speed, kRadPerSecondPerRpm,
+           kMatch * std::abs(state.shaft_speed));
+      hold("psi_rad_per_s2", state.block_acceleration, law.block_acceleration, 1,
+           kMatch * (std::abs(state.shaft_acceleration) + state.shaft_speed * state.shaft_speed));
+      state = law;
+    }
     const Geometry& geometry = the_case.pump.geometry;
     for (int k = 0; k < pistons; ++k) {
       const double phase = 360.0 * k / pistons;
       const double needed = joint_distance(geometry, radians(state.theta_deg - phase),
                                            radians(state.psi_deg - phase));
       if (!(needed < geometry.piston_length))
-        refuse_value(file, table, i, columns.at("psi_deg"),
+        refuse_value(file, table, i, columns.at(block_given ? "psi_deg" : "theta_deg"),
                      "closer to theta_deg = " + number_text(state.theta_deg) +
                          ": the pump cannot be assembled, piston " + std::to_string(k + 1) +
                          " would have to be longer than " + number_text(needed * 1e3) + " mm");

@@ -1,5 +1,6 @@
 #include "bentaxis/files/schema.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -195,9 +196,16 @@ std::string case_schema(const Registry& registry) {
       (*parent)["required"].push_back(key);
     if (table.part != nullptr && !table.part->needed.words.empty()) {
       const When& when = table.part->needed;
-      schema["allOf"].push_back(
-          {{"if", {{"properties", {{when.table, condition(when)}}}, {"required", {when.table}}}},
-           {"then", {{"required", {key}}}}});
+      Json met = {{"properties", {{when.table, condition(when)}}}, {"required", {when.table}}};
+      // Also where the key is left out, if its default is one of the words.
+      const auto& fallback = parameter_of(registry, when.table, when.key).fallback.value;
+      const auto* const word = fallback ? std::get_if<std::string>(&*fallback) : nullptr;
+      if (word != nullptr &&
+          std::find(when.words.begin(), when.words.end(), *word) != when.words.end()) {
+        met.erase("required");
+        met["properties"][when.table].erase("required");
+      }
+      schema["allOf"].push_back({{"if", met}, {"then", {{"required", {key}}}}});
     }
   }
   schema["properties"]["uncertainty"] = uncertainty_schema();

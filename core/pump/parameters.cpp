@@ -19,6 +19,11 @@ std::string piston_inertia_refusal(PistonInertia inertia, const PumpParameters& 
   return "";
 }
 
+std::string imposed_refusal(BlockDrive drive, const PumpParameters& pump) {
+  if (drive == BlockDrive::mesh || pump.transfer.kind == TransferKind::gear) return "";
+  return "must be \"mesh\" beside [transfer] kind = \"" + to_string(pump.transfer.kind) + "\"";
+}
+
 AssemblyMargin assembly_margin(const Geometry& g) {
   // With u = cos theta the squared distance of A from its bore axis is
   // (Rd - Ra)^2 (1 - u^2) + (q u - s)^2: its maximum is at u = -1, at u = 1 or at the vertex.
@@ -35,6 +40,49 @@ AssemblyMargin assembly_margin(const Geometry& g) {
     if (distance(vertex) > distance(worst_u)) worst_u = vertex;
   }
   return {distance(worst_u), std::acos(worst_u) / kRadPerDegree};
+}
+
+namespace {
+
+// Lag psi - theta of a universal joint's block, from a.a' = 0 of its arms.
+double cardan_lead(const PumpParameters& pump, double theta) {
+  const double t = theta - pump.transfer.cardan.value_or(CardanJoint()).phase;
+  const double c = std::cos(pump.geometry.tilt);
+  return std::atan2((c - 1) * std::sin(t) * std::cos(t),
+                    std::cos(t) * std::cos(t) + c * std::sin(t) * std::sin(t));
+}
+
+}  // namespace
+
+AssemblyMargin assembly_margin(const PumpParameters& pump) {
+  const Geometry& g = pump.geometry;
+  if (pump.transfer.kind != TransferKind::cardan) return assembly_margin(g);
+  // Smooth over the turn: the worst of many angles, and from there the vertex of a parabola.
+  constexpr int kAngles = 3600;
+  const double step = 2 * kPi / kAngles;
+  AssemblyMargin worst;
+  for (int k = 0; k < g.pistons; ++k) {
+    const double phase = 2 * kPi * k / g.pistons;
+    const auto distance = [&](double theta) {
+      return joint_distance(g, theta - phase, theta + cardan_lead(pump, theta) - phase);
+    };
+    const auto take = [&](double theta, double value) {
+      if (value > worst.longest_distance) worst = {value, theta / kRadPerDegree};
+    };
+    double before = distance(-step), here = distance(0);
+    for (int i = 0; i < kAngles; ++i) {
+      const double next = distance(step * (i + 1));
+      const double bend = before - 2 * here + next;
+      if (here >= before && here >= next && bend < 0) {
+        const double vertex = step * (i + (before - next) / (2 * bend));
+        take(vertex, std::max(here, distance(vertex)));
+      }
+      before = here;
+      here = next;
+    }
+    take(0, distance(0));
+  }
+  return worst;
 }
 
 double joint_distance(const Geometry& g, double theta, double psi) {

@@ -273,8 +273,15 @@ bool holds(const When& when, const Registry& registry, const Case& the_case) {
                       when.words.end();
 }
 
-bool is_active(const Table& /*table*/, const Parameter& parameter, const Registry& registry,
+bool is_active(const Table& table, const Parameter& parameter, const Registry& registry,
                const Case& the_case) {
+  if (table.part != nullptr && !table.part->needed.words.empty() &&
+      !holds(table.part->needed, registry, the_case))
+    return false;
+  return is_asked_for(parameter, registry, the_case);
+}
+
+bool is_asked_for(const Parameter& parameter, const Registry& registry, const Case& the_case) {
   if (!is_there(parameter, the_case)) return false;
   return parameter.active.words.empty() || holds(parameter.active, registry, the_case);
 }
@@ -318,7 +325,10 @@ std::vector<PumpInput> continuous_inputs(PumpParameters& pump, const Registry& r
   for (const Table& table : registry.tables)
     for (const Parameter& parameter : table.parameters) {
       if (parameter.path.empty() || !is_there(parameter, the_case)) continue;
-      auto& list = parameter.within == nullptr ? always : in_parts;
+      const Part* const part = parameter.within;
+      const bool needed =
+          part == nullptr || (part == table.part && holds(part->needed, registry, the_case));
+      auto& list = needed ? always : in_parts;
       auto path = parameter.path.begin();
       for (const Access<double>* place : numbers_of(parameter.field))
         list.push_back({*path++, place->in_pump(pump), si_range(parameter, the_case)});

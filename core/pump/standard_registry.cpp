@@ -82,6 +82,7 @@ Registry make_registry() {
   using namespace tables;
   Registry registry{{top_level(),
                      pump_table(),
+                     transfer_table(),
                      gear_table(),
                      bearings_table(),
                      piston_table(),

@@ -19,6 +19,13 @@ std::string of_piston(std::string_view text, int piston) {
   return result;
 }
 
+// "rad/s2" -> "rad_per_s2"
+std::string in_name(std::string unit) {
+  if (const auto slash = unit.find('/'); slash != std::string::npos)
+    unit.replace(slash, 1, "_per_");
+  return unit;
+}
+
 // One component of a quantity, of piston 1.. or of none (0).
 Channel describe(const QuantityEntry& entry, char component, int piston) {
   Channel channel;
@@ -38,14 +45,15 @@ Channel describe(const QuantityEntry& entry, char component, int piston) {
   channel.name = channel.quantity;
   if (piston > 0) channel.name += "_" + std::to_string(piston);
   if (!channel.axis.empty()) channel.name += "_" + channel.axis;
-  channel.name += "_" + channel.unit;
+  channel.name += "_" + in_name(channel.unit);
   return channel;
 }
 
-std::vector<Channel> list_channels(int pistons) {
-  std::vector<Channel> list(quantity_place(std::size(kQuantities)).column(pistons, 0, 0));
+std::vector<Channel> list_channels(int pistons, TransferKind transfer) {
+  std::vector<Channel> list(quantity_place(std::size(kQuantities), transfer).column(pistons, 0, 0));
   for (std::size_t q = 0; q < std::size(kQuantities); ++q) {
-    const QuantityPlace place = quantity_place(q);
+    if ((kQuantities[q].transfers & transfers::bit(transfer)) == 0) continue;
+    const QuantityPlace place = quantity_place(q, transfer);
     for (int k = 0; k < (place.repeated ? pistons : 1); ++k)
       for (int i = 0; i < place.components; ++i)
         list[place.column(pistons, k, i)] =
@@ -56,12 +64,13 @@ std::vector<Channel> list_channels(int pistons) {
 
 }  // namespace
 
-ChannelLayout::ChannelLayout(int pistons) : n_(pistons) {
+ChannelLayout::ChannelLayout(int pistons, TransferKind transfer)
+    : n_(pistons), transfer_(transfer) {
   static std::mutex mutex;
-  static std::map<int, std::shared_ptr<const std::vector<Channel>>> lists;
+  static std::map<std::pair<int, TransferKind>, std::shared_ptr<const std::vector<Channel>>> lists;
   const std::lock_guard<std::mutex> lock(mutex);
-  auto& list = lists[pistons];
-  if (!list) list = std::make_shared<const std::vector<Channel>>(list_channels(pistons));
+  auto& list = lists[{pistons, transfer}];
+  if (!list) list = std::make_shared<const std::vector<Channel>>(list_channels(pistons, transfer));
   channels_ = list;
 }
 

@@ -21,8 +21,25 @@ void Samples::instant(std::size_t row, Instant& instant) const {
   instant.chamber_pressure.assign(first, first + pistons);
 }
 
+void require_constant_speed(const Case& the_case) {
+  const TransferKind kind = the_case.pump.transfer.kind;
+  const auto refuse = [&](const std::string& value, const std::string& why) {
+    throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") + "[pressure] " +
+                     value + ": must be " + why + " beside [transfer] kind = \"" + to_string(kind) +
+                     "\" at constant speed");
+  };
+  const bool pistons = kind == TransferKind::pistons;
+  if ((pistons || kind == TransferKind::cardan) &&
+      the_case.pressure.kind == PressureKind::hydraulic)
+    refuse("kind = \"hydraulic\"", "\"ideal\" or \"curve\"");
+  if (pistons && the_case.pressure.kind == PressureKind::ideal &&
+      the_case.pressure.transition_deg == 0)
+    refuse("transition_deg = 0", "> 0");
+}
+
 Samples sample_case(const Case& the_case, const PressureTrace& pressure, int revolutions,
                     bool falling, const SampleRange& range) {
+  require_constant_speed(the_case);
   const int per_turn = the_case.operation.samples_per_revolution;
   const long long rows = static_cast<long long>(per_turn) * revolutions;
   const long long end = range.count < 0 ? rows : std::min(rows, range.first + range.count);

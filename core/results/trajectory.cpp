@@ -86,7 +86,7 @@ const DriveSpec& drive_of(const Case& the_case) {
 
 void require_smooth_friction(const Case& the_case) {
   const bool free =
-      drive_of(the_case).kind != DriveKind::speed || the_case.pump.gear.is_compliant();
+      drive_of(the_case).kind != DriveKind::speed || the_case.pump.block_moves_freely();
   if (free && the_case.pump.friction.piston_coulomb > 0 &&
       the_case.pump.friction.regularization == 0)
     throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") +

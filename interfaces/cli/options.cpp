@@ -191,7 +191,7 @@ void RunChoice::refuse_without_effect(bool multibody, bool states) const {
 }
 
 multibody::SceneChoice RunChoice::scene_for(const Case& the_case) const {
-  const ChannelLayout layout(the_case.pump.geometry.pistons);
+  const ChannelLayout layout(the_case.pump);
   const study::ChannelChoice wanted = channels();
   multibody::SceneChoice choice = scene;
   choice.method = method();

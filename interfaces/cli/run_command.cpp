@@ -44,7 +44,7 @@ int finish(OutputFolder& folder, const std::string& name, const std::vector<std:
 int run_states(const Options& options, const study::PreparedCase& ready,
                const study::RunOptions& run_options, const study::ChannelChoice& channels,
                OutputFolder& folder) {
-  std::vector<Channel> there = ChannelLayout(ready.the_case.pump.geometry.pistons).channels();
+  std::vector<Channel> there = ChannelLayout(ready.the_case.pump).channels();
   for (const Channel& channel : motion_channels()) there.push_back(channel);
   channels.of(there);  // refuses unknown names
   const States states = read_states(options.states, ready.the_case, ready.pressure);
@@ -97,7 +97,7 @@ int run(const Options& options) {
     return run_states(options, ready, run_options, channels, folder);
   }
   if (analytic)
-    channels.of(ChannelLayout(ready.the_case.pump.geometry.pistons));  // refuses unknown names
+    channels.of(ChannelLayout(ready.the_case.pump));  // refuses unknown names
   else
     run_options.scene = options.choice.scene_for(ready.the_case);
   run_options.integration = options.choice.integration;

@@ -323,7 +323,7 @@ class Finder {
       if (it->role == Role::output && (it->unit == "N" || it->unit == "Nm"))
         add_all(all, found[it->reference]);
     std::vector<Channel> channels = motion_channels();
-    const std::vector<Channel> of_run = ChannelLayout(case_.pump.geometry.pistons).channels();
+    const std::vector<Channel> of_run = ChannelLayout(case_.pump).channels();
     channels.insert(channels.end(), of_run.begin(), of_run.end());
     for (const Channel& channel : channels)
       if (const auto reference = reference_of(channel.name);

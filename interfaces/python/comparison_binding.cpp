@@ -57,8 +57,7 @@ Comparison compare_cases(const PythonCase& the_case, const CaseValues& multibody
   assume(multibody, "multibody", of_multibody.pump, of_multibody.multibody);
   study::ComparisonOptions options;
   options.channels = study::ChannelChoice(texts_of(channels, "channels"));
-  options.scene.scene =
-      options.channels.scene_for(ChannelLayout(first.pump.geometry.pistons), std::nullopt);
+  options.scene.scene = options.channels.scene_for(ChannelLayout(first.pump), std::nullopt);
   options.tolerance = tolerance;
   options.loads = true;
   if (const auto data = shipped("reference_data")) options.published = *data / "published";

@@ -147,7 +147,7 @@ std::optional<Table> bands(const Identification& self) {
     for (const designs::ReactionBand& band : result.bands)
       memory->values.insert(memory->values.end(),
                             {band.low[row], band.middle[row], band.high[row]});
-  const ChannelLayout layout(self.found->model.base().pump.geometry.pistons);
+  const ChannelLayout layout(self.found->model.base().pump);
   table.columns.push_back({"theta_deg", "deg", "angle of the shaft", result.theta_deg.data()});
   table.first_of_block = 1;
   for (const designs::ReactionBand& band : result.bands)

@@ -55,7 +55,7 @@ Warned<ResultTable> turn(const Case& the_case, study::Model model,
                          const study::PartProgress& progress_of) {
   Warned<ResultTable> found;
   found.implausible = plausibility_texts(the_case);
-  const ChannelLayout layout(the_case.pump.geometry.pistons);
+  const ChannelLayout layout(the_case.pump);
   study::RunOptions options;
   options.model = model;
   if (model == study::Model::multibody)
@@ -132,7 +132,7 @@ Table run_states(const PythonCase& the_case, const Motion& states, const std::st
   return shown(unlocked([&](const study::PartProgress& progress_of) {
     Warned<MotionTable> found;
     found.implausible = plausibility_texts(copy);
-    std::vector<Channel> there = ChannelLayout(copy.pump.geometry.pistons).channels();
+    std::vector<Channel> there = ChannelLayout(copy.pump).channels();
     for (const Channel& channel : motion_channels()) there.push_back(channel);
     wanted.of(there);  // refuses unknown names
     const study::PreparedCase ready = study::prepare(copy, progress_of);

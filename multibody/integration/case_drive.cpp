@@ -19,7 +19,9 @@ void require_simulable(const Case& the_case, const Assumptions& assumptions) {
     throw InputError(
         "multibody model: the motion of the block is imposed, so it cannot be simulated: use gear "
         "= \"mesh\"");
-  const bool compliant = the_case.pump.gear.is_compliant();
+  const TransferKind transfer = the_case.pump.transfer.kind;
+  const bool block_accelerates =
+      the_case.pump.block_moves_freely() || transfer == TransferKind::cardan;
   const bool speed_changes = drive.kind != DriveKind::speed || !drive.curve.time.empty();
   const std::string file = the_case.file.empty() ? "" : the_case.file.string() + ": ";
   const auto need = [&](double inertia, const char* key) {
@@ -32,7 +34,7 @@ void require_simulable(const Case& the_case, const Assumptions& assumptions) {
                      "[piston]: without inertia about A (mass 0, or all of it at A) pistons have "
                      "no equation of motion in Simbody: use the analytic model");
   if (speed_changes) need(the_case.pump.shaft.axial_inertia, "shaft");
-  if (speed_changes || compliant) need(the_case.pump.block.axial_inertia, "block");
+  if (speed_changes || block_accelerates) need(the_case.pump.block.axial_inertia, "block");
 }
 
 CaseDrive::CaseDrive(const Case& the_case)

@@ -24,7 +24,7 @@ void FreeMotion::allow(double shaft, double block, Vector& speeds, Vector& momen
   pump_.matter().multiplyByM(state, speeds, momenta);
 }
 
-FreeMotion::Accelerations FreeMotion::solve(bool shaft_is_free) {
+FreeMotion::Accelerations FreeMotion::solve(bool shaft_is_free, double ratio) {
   const State& state = pump_.dynamics();
   const auto& system = pump_.system();
   system.realize(state, SimTK::Stage::Dynamics);
@@ -42,8 +42,8 @@ FreeMotion::Accelerations FreeMotion::solve(bool shaft_is_free) {
     const double missing = -residual_[drive->rotor_u(state)];
     found.rotor = missing / drive->rotor_inertia();
   }
-  if (pump_.has_rigid_gear()) {
-    allow(1, 1, by_shaft_, shaft_momenta_);
+  if (pump_.has_rigid_gear() || pump_.joint() != nullptr) {
+    allow(1, ratio, by_shaft_, shaft_momenta_);
     const double missing = -(~by_shaft_ * residual_);
     if (!shaft_is_free) {
       found.torque_on_shaft = -missing;
@@ -51,7 +51,7 @@ FreeMotion::Accelerations FreeMotion::solve(bool shaft_is_free) {
     }
     const double more = missing / (~by_shaft_ * shaft_momenta_);
     found.shaft += more;
-    found.block += more;
+    found.block += ratio * more;
     return found;
   }
   allow(1, 0, by_shaft_, shaft_momenta_);

@@ -9,7 +9,7 @@
 namespace bentaxis::multibody {
 
 /// Solves the equations of motion along the motions that the constraints allow: of the shaft, of
-/// the block, which with rigid teeth turns as the shaft does, and of a rotor. Along them
+/// the block, which with rigid teeth or a joint follows the shaft, and of a rotor. Along them
 /// constraints do no work, so no multiplier is sought: Simbody's own solution for all of them
 /// factors a matrix of all constraint equations. Masses, forces and velocities are Simbody's.
 class FreeMotion {
@@ -23,7 +23,8 @@ class FreeMotion {
   FreeMotion(PumpSystem& pump, Placement& placement);
 
   /// At the last placement; the shaft's acceleration there counts where its speed is given.
-  Accelerations solve(bool shaft_is_free);
+  /// @param ratio  speed of the block over that of the shaft, where a gear or joint prescribes it
+  Accelerations solve(bool shaft_is_free, double ratio = 1);
 
  private:
   void allow(double shaft, double block, SimTK::Vector& speeds, SimTK::Vector& momenta) const;

@@ -48,8 +48,9 @@ class MultibodyMechanics : public Mechanics {
         placement_(system_),
         free_motion_(system_, placement_),
         load_reader_(system_),
-        layout_(pump_.geometry.pistons),
-        arm_(system_.gear().arm()) {
+        layout_(pump_),
+        joint_(pump_.transfer.is_joint() ? std::make_unique<JointMotion>(pump_) : nullptr),
+        arm_(joint_ ? pump_.geometry.joint_circle_radius : system_.gear().arm()) {
     system_.inputs().chamber_pressure = [this](double, double, std::vector<double>& p) {
       p = loads_.chamber_pressure;
     };
@@ -83,6 +84,10 @@ class MultibodyMechanics : public Mechanics {
   }
   AxisMotion block(double time, const MotionVector& y) const override {
     const AxisMotion motion = shaft(time, y);
+    if (joint_) {
+      const AxisMotion block = joint_->block(motion);
+      return {block.angle, block.speed, 0};
+    }
     return {motion.angle - y[kLag], motion.speed - y[kLagRate], 0};
   }
   double approach(double time, const MotionVector& y, int flank) const override {
@@ -162,6 +167,7 @@ class MultibodyMechanics : public Mechanics {
     now.block = block(time, y);
     if (drive_.gives_speed())
       now.shaft.acceleration = now.block.acceleration = drive_.turning(time).acceleration;
+    if (joint_) now.block = joint_->block(now.shaft);
     if (has_motor()) now.rotor_speed = now.shaft.speed + y[kTwistRate];
     now.lag = y[kLag];
     now.lag_rate = y[kLagRate];
@@ -190,7 +196,8 @@ class MultibodyMechanics : public Mechanics {
   FreeMotion free_motion_;
   BodyLoadReader load_reader_;
   ChannelLayout layout_;
-  double arm_;  // m, of the teeth's line of action about the block's axis
+  std::unique_ptr<JointMotion> joint_;  // of a pump with a joint
+  double arm_;                          // m, of the teeth's line of action about the block's axis
   OilLoads loads_;
   FreeMotion::Accelerations found_;
   std::optional<Posture> placed_;
@@ -234,7 +241,8 @@ void MultibodyMechanics::load(const OilLoads& loads) {
 void MultibodyMechanics::accelerate(const Posture& now, const OilLoads& loads) {
   load(loads);
   place(now);
-  found_ = free_motion_.solve(shaft_is_free());
+  found_ = free_motion_.solve(shaft_is_free(),
+                              joint_ ? joint_->block({now.shaft.angle, 1, 0}).speed : 1);
   if (!std::isfinite(found_.shaft + found_.block + found_.rotor + found_.torque_on_shaft))
     throw ComputationError("multibody model: no accelerations at " + short_text(now.time) + " s");
 }
@@ -347,7 +355,7 @@ MotionVector MultibodyMechanics::find_scales(const Case& the_case) {
     const auto turning = [&](double shaft_speed, double block_speed) {
       Posture now;
       now.shaft = {angle, shaft_speed, 0};
-      now.block = {angle, block_speed, 0};
+      now.block = {joint_ ? joint_->block({angle, 0, 0}).angle : angle, block_speed, 0};
       return now;
     };
     // The energy of their spin is the pistons' at any speed.
@@ -426,6 +434,11 @@ MotionVector MultibodyMechanics::find_scales(const Case& the_case) {
 
 std::unique_ptr<Mechanics> mechanics(const Case& the_case, const Assumptions& assumptions) {
   require_simulable(the_case, assumptions);
+  if (the_case.pump.transfer.kind == TransferKind::pistons)
+    throw InputError(
+        (the_case.file.empty() ? "" : the_case.file.string() + ": ") +
+        "[transfer] kind = \"pistons\": the multibody model has no equations of motion "
+        "for oil or a motor of others beside them; simulate with a given pressure");
   require_smooth_friction(the_case);
   std::unique_ptr<Mechanics> mechanics;
   translate_simbody_errors(

@@ -88,6 +88,7 @@ MotionRun::MotionRun(const Case& the_case, const Assumptions& assumptions,
   const State& state = system_.dynamics();
   energy_at_start_ = system_.system().calcKineticEnergy(state);
   if (system_.teeth() != nullptr) elastic_at_start_ += system_.teeth()->elastic_energy(state);
+  if (system_.walls() != nullptr) elastic_at_start_ += system_.walls()->elastic_energy(state);
   if (system_.drive_torque() != nullptr)
     elastic_at_start_ += system_.drive_torque()->elastic_energy(state);
   stepper_.foresee(spec_.duration);
@@ -95,11 +96,28 @@ MotionRun::MotionRun(const Case& the_case, const Assumptions& assumptions,
 
 void MotionRun::place_at_start() {
   const double speed = drive_.start_speed();
-  // Shaft and block stand at 0: on an edge there they are past it in the direction they turn.
-  segment_ = edges_.empty() || (edges_.front() <= kOnEdge && speed >= 0) ? 0 : -1;
+  const AxisMotion shaft{0, speed, 0};
+  AxisMotion block = shaft;
+  if (system_.joint() != nullptr) block = JointMotion(case_.pump).block(shaft);
+  block.acceleration = 0;
+  // On an edge the block is past it in the direction it turns.
+  const double psi = block.angle / kRadPerDegree;
+  const double turn = psi < 0 ? -360 : 0;
+  const double reached = psi - turn + (speed >= 0 ? kOnEdge : -kOnEdge);
+  const auto passed =
+      std::count_if(edges_.begin(), edges_.end(), [&](double edge) { return edge <= reached; });
+  const auto count = static_cast<long>(edges_.size());
+  segment_ = edges_.empty() ? 0 : passed - 1 + (turn < 0 ? -count : 0);
   system_.inputs().rest_speed = 0;
   Placement placement(system_);
-  placement.place({0, speed, 0}, {0, speed, 0});
+  placement.place(shaft, block);
+  if (const BoreWalls* walls = system_.walls()) {
+    std::vector<WallBranch> held;
+    for (std::size_t k = 0; k < walls->size(); ++k)
+      held.push_back(walls->branch_at(system_.dynamics(), k));
+    system_.wall_setting().held = held;
+    system_.dynamics().invalidateAllCacheAtOrAbove(Stage::Dynamics);
+  }
   if (system_.drive_torque() != nullptr)
     system_.drive_torque()->start(system_.dynamics(), speed, drive_.start_torque());
   system_.system().realize(system_.dynamics(), Stage::Velocity);
@@ -151,6 +169,7 @@ std::vector<MotionRun::Event> MotionRun::events() {
   std::vector<Event> events;
   add_pressure_edges(events);
   add_tooth_events(events);
+  add_wall_events(events);
   add_friction_jumps(events);
   return events;
 }
@@ -198,6 +217,27 @@ void MotionRun::add_tooth_events(std::vector<Event>& events) {
        [=] { set_branch(flank, !branch.released); }});
 }
 
+void MotionRun::add_wall_events(std::vector<Event>& events) {
+  const BoreWalls* walls = system_.walls();
+  if (walls == nullptr) return;
+  const WallContact& law = walls->law();
+  const double tolerance = kNoApproach * kWallApproach;
+  for (std::size_t k = 0; k < walls->size(); ++k) {
+    const WallBranch branch = system_.wall_setting().held[k];
+    const double way = branch.touching ? -1 : 1;
+    events.push_back({{[=](const State& s) { return way * walls->touch(s, k).approach; },
+                       [=](const State& s) { return way * walls->touch(s, k).rate; }, tolerance},
+                      [=] { branch.touching ? leave_wall(k) : touch_wall(k); }});
+    if (!branch.touching || law.dissipation == 0) continue;
+    const double turn = branch.released ? 1 : -1;
+    events.push_back(
+        {{[=](const State& s) { return turn * (1 + law.dissipation * walls->touch(s, k).rate); },
+          {},
+          kNoForce},
+         [=] { system_.wall_setting().held[k].released = !branch.released; }});
+  }
+}
+
 void MotionRun::add_friction_jumps(std::vector<Event>& events) {
   std::vector<double>& held = system_.inputs().held_direction;
   const Vec3 z2(system_.bodies().block_frame.z());
@@ -233,6 +273,31 @@ void MotionRun::leave(int flank) {
   tooth_events_.push_back({stepper_.time(), false, flank, shaft_speed(state), block_speed(state),
                            system_.teeth()->approach_rate(state, flank), 0});
   set_branch(0, false);
+}
+
+int MotionRun::carrying_walls() {
+  const auto& held = system_.wall_setting().held;
+  return static_cast<int>(std::count_if(held.begin(), held.end(),
+                                        [](const WallBranch& wall) { return wall.touching; }));
+}
+
+void MotionRun::touch_wall(std::size_t piston) {
+  if (carrying_walls() == 0) time_apart_ += stepper_.time() - apart_since_;
+  system_.wall_setting().held[piston] = {true, false};
+  note_wall(piston, true);
+}
+
+void MotionRun::leave_wall(std::size_t piston) {
+  system_.wall_setting().held[piston] = {};
+  if (carrying_walls() == 0) apart_since_ = stepper_.time();
+  note_wall(piston, false);
+}
+
+void MotionRun::note_wall(std::size_t piston, bool touch) {
+  const State& state = stepper_.state();
+  tooth_events_.push_back({stepper_.time(), touch, lag(state) < 0 ? -1 : 1, shaft_speed(state),
+                           block_speed(state), system_.walls()->touch(state, piston).rate, 0,
+                           static_cast<int>(piston) + 1});
 }
 
 void MotionRun::guard_against_chatter(double time) {
@@ -292,6 +357,10 @@ void MotionRun::run(Trajectory& trajectory, const Progress& progress) {
       tooth_events_.back().impulse = system_.teeth()->impulse(stepper_.state()) - impulse_at_touch_;
     record_.share_out_of_contact = time_apart_ / spec_.duration;
   }
+  if (system_.walls() != nullptr) {
+    if (carrying_walls() == 0) time_apart_ += spec_.duration - apart_since_;
+    record_.share_out_of_contact = time_apart_ / spec_.duration;
+  }
   record_.events = tooth_events_;
   record_.steps = stepper_.steps();
   record_.evaluations = system_.system().getNumRealizationsOfThisStage(Stage::Acceleration);
@@ -305,6 +374,7 @@ void MotionRun::account(TrajectoryRecord& record) {
   double drives = system_.work().of_drives(state);
   double total = system_.work().of_loads(state) + drives;
   if (system_.teeth() != nullptr) elastic += system_.teeth()->elastic_energy(state);
+  if (system_.walls() != nullptr) elastic += system_.walls()->elastic_energy(state);
   if (system_.drive_torque() != nullptr) {
     elastic += system_.drive_torque()->elastic_energy(state);
     total -= drives;  // a torque that is applied is among the loads
@@ -340,7 +410,7 @@ void MotionRun::read(double time, Trajectory& trajectory) {
   require_accurate_forces(estimated_force_error(system_, state), radians(theta));
 
   const int n = case_.pump.geometry.pistons;
-  const ChannelLayout layout(n);
+  const ChannelLayout layout(system_.pump());
   std::vector<double> values(layout.size(), not_computed());
   std::vector<double> pressure(static_cast<std::size_t>(n));
   system_.inputs().chamber_pressure(0, system_.bodies().block.getOneQ(state, 0), pressure);

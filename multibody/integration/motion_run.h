@@ -45,6 +45,11 @@ class MotionRun {
   std::vector<Event> events();
   void add_pressure_edges(std::vector<Event>& events);
   void add_tooth_events(std::vector<Event>& events);
+  void add_wall_events(std::vector<Event>& events);
+  void touch_wall(std::size_t piston);
+  void leave_wall(std::size_t piston);
+  void note_wall(std::size_t piston, bool touch);
+  int carrying_walls();
   void add_friction_jumps(std::vector<Event>& events);
   void set_branch(int flank, bool released);
   void touch(int flank);

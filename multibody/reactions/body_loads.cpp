@@ -115,11 +115,17 @@ void BodyLoadReader::read_pistons(Looked& at, const std::vector<double>& pressur
     block_reaction.force(name, "Rc", bore, c, -on.bore);
     block_applied.force(name, "Fpf", ring, b, -axial.friction * z2);
     block_applied.force("oil", "Ftp", ring, b, p.block.bottom_area * pressure[k] * z2);
+    if (pump_.walls() != nullptr) {
+      const std::string touch = "D" + number;
+      const Vec3 d = a + pump_.walls()->law().from_joint * along;
+      reaction.force("block", "Rw", touch, d, on.wall);
+      block_reaction.force(name, "Rw", touch, d, -on.wall);
+    }
     shaft.force(name, "Rs", joint, a, -on.joint);
   }
 }
 
-void BodyLoadReader::read_gear(Looked& at, const TeethAction* teeth) const {
+void BodyLoadReader::read_transfer(Looked& at, const TeethAction* teeth) const {
   const PumpBodies& bodies = pump_.bodies();
   const Putter block(at.block, "block", ForceKind::reaction);
   const Putter shaft(at.shaft, "shaft", ForceKind::reaction);
@@ -127,7 +133,15 @@ void BodyLoadReader::read_gear(Looked& at, const TeethAction* teeth) const {
     block.force("shaft", "Rcs", name, point, force);
     shaft.force("block", "Rcs", name, point, -force);
   };
-  if (teeth != nullptr) {
+  if (pump_.joint() != nullptr) {
+    block.moment("shaft", "Tcs", "about O2", bodies.block_origin, at.reactions.couple);
+    shaft.moment("block", "Tcs", "about O2", bodies.block_origin, -at.reactions.couple);
+  } else if (pump_.walls() != nullptr) {
+    // The walls are the pistons'. Given states need a torque from outside.
+    if (pump_.block_is_imposed() && at.reactions.block_is_given)
+      block.moment("outside", "Tb", "about z2", bodies.block_origin,
+                   at.reactions.imposed * Vec3(bodies.block_frame.z()));
+  } else if (teeth != nullptr) {
     for (std::size_t i = 0; i < teeth->pairs.size(); ++i) {
       const PairContact& pair = teeth->pairs[i];
       if (pair.force > 0)
@@ -144,7 +158,7 @@ void BodyLoadReader::read_gear(Looked& at, const TeethAction* teeth) const {
   }
 }
 
-// All but what pistons and gear do.
+// All but what pistons and transfer do.
 void BodyLoadReader::read_block(Looked& at) {
   const PumpBodies& bodies = pump_.bodies();
   const PumpParameters& p = pump_.pump();
@@ -218,7 +232,7 @@ std::vector<BodyLoad> BodyLoadReader::read(const State& state, const SimTK::Vect
   SimTK::Vector mobilities;
   pump_.weight().calcForceContribution(state, at.weights, particles, mobilities);
   read_pistons(at, pressure);
-  read_gear(at, teeth);
+  read_transfer(at, teeth);
   read_block(at);
   read_shaft(at);
   Loads loads = std::move(at.pistons);

@@ -33,7 +33,7 @@ class BodyLoadReader {
  private:
   struct Looked;
   void read_pistons(Looked& at, const std::vector<double>& pressure) const;
-  void read_gear(Looked& at, const TeethAction* teeth) const;
+  void read_transfer(Looked& at, const TeethAction* teeth) const;
   void read_block(Looked& at);
   void read_shaft(Looked& at) const;
 

@@ -43,6 +43,16 @@ Motion turning(const PumpSystem& pump, const PistonSolver& pistons, double shaft
 
 }  // namespace
 
+namespace {
+
+// Speed of the block over that of the shaft that a joint lets through: its couple does no work.
+double block_over_shaft(const PumpSystem& pump, const State& state) {
+  return -dot(pump.joint()->unit_couple_on_shaft(state), Vec3(0, 0, 1)) /
+         dot(pump.joint()->unit_couple_on_block(state), Vec3(pump.bodies().block_frame.z()));
+}
+
+}  // namespace
+
 Budget budget_of(PumpSystem& pump, Placement& placement, const Reactions& reactions) {
   const State& state = pump.dynamics();
   const PumpBodies& bodies = pump.bodies();
@@ -54,10 +64,19 @@ Budget budget_of(PumpSystem& pump, Placement& placement, const Reactions& reacti
   OnBodies forces;
   SimTK::Vector_<Vec3> particles;
   Vector mobilities;
-  // The gear passes on to the shaft what the block needs; an imposed motion supplies it.
+  // Gear, joint or walls pass on to the shaft what the block needs: as much torque per torque on
+  // the block as they exert on the shaft. An imposed motion supplies it.
+  double passed_on = pump.has_gear() ? 1 : 0;
+  if (pump.joint() != nullptr) passed_on = block_over_shaft(pump, state);
+  if (pump.walls() != nullptr) {
+    pump.walls()->force().calcForceContribution(state, forces, particles, mobilities);
+    budget.carrying_torque = block_turns.power(forces);
+    if (budget.carrying_torque != 0)
+      passed_on = -shaft_turns.power(forces) / budget.carrying_torque;
+  }
   const auto put = [&](Cause cause, double on_shaft, double on_block) {
     budget.carrying_of(cause) = on_block;
-    budget.drive_of(cause) = pump.has_gear() ? on_shaft + on_block : on_shaft;
+    budget.drive_of(cause) = on_shaft + passed_on * on_block;
   };
   const auto along_axis = [&] { return dot(z2, forces[bodies.block.getMobilizedBodyIndex()][1]); };
   const auto put_forces = [&](Cause cause) {
@@ -117,12 +136,14 @@ Budget budget_of(PumpSystem& pump, Placement& placement, const Reactions& reacti
     // At one speed of shaft and block: what goes into the teeth and does not come out of them.
     budget.drive_of(Cause::teeth) = -pump.bevel_torque_on_shaft(state) - budget.carrying_torque;
     budget.pressing += dot(z2, vector_of(pump.bevel()->action(state).force));
+  } else if (pump.joint() != nullptr) {
+    budget.carrying_torque = dot(z2, reactions.couple);
   } else if (pump.has_gear()) {
     const GearMesh& gear = pump.gear();
     budget.carrying_torque =
         reactions.tooth * dot(z2, (gear.point() - bodies.block_origin) % reactions.tooth_line);
     budget.pressing += reactions.tooth * dot(z2, reactions.tooth_line);
-  } else {
+  } else if (pump.walls() == nullptr) {
     budget.carrying_torque = reactions.imposed;
   }
   find_only(LoadSource::film);

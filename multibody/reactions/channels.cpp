@@ -45,12 +45,35 @@ void read_piston_channels(const PumpSystem& pump, const Reactions& reactions, st
 
 namespace {
 
-// Both torques that pass between shaft and block, Nm: those of a gear with one line cancel.
+// Both torques that pass between shaft and block, Nm, where the block is locked to the shaft and a
+// gear or an imposed motion turns it: those of a gear with one line cancel.
 double gear_torque(const PumpSystem& pump, const State& state, const Reactions& reactions,
                    double imposed) {
   if (!pump.has_gear()) return imposed;
   if (pump.bevel() == nullptr) return 0;
   return reactions.tooth * pump.gear().arm() + pump.bevel_torque_on_shaft(state);
+}
+
+// What transfers other than a gear have.
+void read_transfer_channels(const PumpSystem& pump, const Reactions& reactions,
+                            const AxisMotions& motion, const ChannelLayout& layout,
+                            std::vector<double>& values) {
+  const Rotation& s2 = pump.bodies().block_frame;
+  if (layout.has(Quantity::TcsJoint)) {
+    const Vec3 couple = ~s2 * reactions.couple;
+    for (int axis = 0; axis < 3; ++axis) values[layout.TcsJoint(axis)] = couple[axis];
+  }
+  if (layout.has(Quantity::psi)) values[layout.psi()] = motion.block.angle;
+  if (layout.has(Quantity::psi_speed)) values[layout.psi_speed()] = motion.block.speed;
+  if (layout.has(Quantity::psi_acceleration))
+    values[layout.psi_acceleration()] = motion.block.acceleration;
+  if (!layout.has(Quantity::Rw)) return;
+  for (int k = 0; k < layout.pistons(); ++k) {
+    const Vec3 wall = ~s2 * reactions.pistons[k].wall;
+    for (int axis = 0; axis < 2; ++axis) values[layout.Rw(k, axis)] = wall[axis];
+  }
+  values[layout.lag()] = motion.shaft.angle - motion.block.angle;
+  values[layout.Tb()] = pump.block_is_imposed() ? reactions.imposed : not_computed();
 }
 
 }  // namespace
@@ -90,7 +113,10 @@ void read_pump_channels(const PumpSystem& pump, const State& state, const Reacti
   values[layout.Th(1)] = moment[1] - p.block.pin_z * force[0];
   values[layout.xh()] = force[2] == 0 ? not_computed() : -values[layout.Th(1)] / force[2];
   values[layout.yh()] = force[2] == 0 ? not_computed() : values[layout.Th(0)] / force[2];
-  if (pump.has_gear()) {
+  if (!layout.has(Quantity::Tcs)) {
+    values[layout.Rcs()] = not_computed();
+    read_transfer_channels(pump, reactions, motion, layout, values);
+  } else if (pump.has_gear()) {
     values[layout.Rcs()] = tooth_force_column(pump, reactions.tooth, motion.shaft.speed);
     values[layout.Tcs()] = carry + p.friction.block_viscous * motion.block.speed +
                            p.block.axial_inertia * motion.block.acceleration;
@@ -103,7 +129,7 @@ void read_pump_channels(const PumpSystem& pump, const State& state, const Reacti
   // The drive gives the torque that is left after the proportional loss (38).
   values[layout.Td()] = reactions.drive / p.friction.shaft_torque_factor;
 
-  if (!motion.locked()) return;
+  if (!motion.locked() || !layout.has(Quantity::Tcs)) return;
   work += ring_power(pump, reactions, rate.state);
   values[layout.power_residual()] =
       reactions.drive - (p.friction.shaft_viscous + p.friction.block_viscous) * motion.shaft.speed -

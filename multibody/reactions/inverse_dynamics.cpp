@@ -40,6 +40,7 @@ void InverseDynamics::solve(Reactions& reactions) {
     on.acceleration = accelerations_[piston.getMobilizedBodyIndex()];
     on.place = piston.getBodyTransform(state);
     on.bore = block * pump_.bores()[k].force_in_base(lever * bore_[k][0], lever * bore_[k][1]);
+    if (pump_.walls() != nullptr) on.wall = pump_.walls()->force_on_piston(state, k);
     const SpatialVec total = needed(piston, loads);
     on.joint = total[1] - on.bore;
     // The bore's force acts on the axis through A: it has no moment about it.
@@ -69,7 +70,14 @@ void InverseDynamics::solve_block_and_shaft(Reactions& reactions, const Loads& l
     on_shaft += SpatialVec((on.place.p() - c1) % on.joint, on.joint);
   }
   reactions.imposed = 0;
-  if (pump_.bevel() != nullptr) {
+  if (pump_.joint() != nullptr) {
+    // Its equation gives the direction of its couple, the block's balance about z2 the size.
+    const Vec3 on_block = pump_.joint()->unit_couple_on_block(state);
+    const double size = dot(hold[0], z2) / dot(on_block, z2);
+    reactions.couple = size * on_block;
+    hold[0] -= reactions.couple;
+    on_shaft[0] -= size * pump_.joint()->unit_couple_on_shaft(state);
+  } else if (pump_.bevel() != nullptr) {
     // Their forces are among the loads. What is left about z2 they do not give.
     reactions.imposed = dot(hold[0], z2);
     hold[0] -= reactions.imposed * z2;

@@ -71,6 +71,9 @@ double power_balance(const PumpSystem& pump, const State& state, const Reactions
     sum += reactions.drive * bodies.shaft.getBodyAngularVelocity(state)[2];
   if (pump.has_rigid_gear())
     sum -= reactions.tooth * dot(reactions.tooth_line, sliding_at_mesh(pump, state));
+  else if (pump.joint() != nullptr)
+    sum += dot(reactions.couple, bodies.block.getBodyAngularVelocity(state) -
+                                     bodies.shaft.getBodyAngularVelocity(state));
   else if (pump.block_is_imposed())
     sum += reactions.imposed * bodies.block.getOneU(state, 0);
   return sum + ring_power(pump, reactions, state);

@@ -35,6 +35,7 @@ void reactions_from_multipliers(const PumpSystem& pump, const State& state, Reac
     on.joint = joint[1];
     on.bore = block * pump.bores()[k].force_in_base(state);
     on.acceleration = piston.getBodyAcceleration(state);
+    if (pump.walls() != nullptr) on.wall = pump.walls()->force_on_piston(state, k);
     // Where the joint leaves the spin free, a moment about the axis would change it.
     on.place = piston.getBodyTransform(state);
     const Vec3 axis(on.place.z());
@@ -52,6 +53,7 @@ void reactions_from_multipliers(const PumpSystem& pump, const State& state, Reac
     reactions.tooth_line =
         pump.has_rigid_gear() ? pump.gear().line() : pump.gear().line_for(reactions.tooth);
   }
+  if (pump.joint() != nullptr) reactions.couple = pump.joint()->couple_on_block(state);
   reactions.imposed = pump.block_is_imposed() ? pump.imposed_block_torque(state) : 0;
 }
 

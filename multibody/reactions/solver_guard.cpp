@@ -111,6 +111,7 @@ double force_difference(const PumpSystem& pump, const Reactions& reactions,
     const double arm = 1 / pump.pump().geometry.joint_circle_radius;
     look({arm * reactions.drive, reactions.tooth, arm * reactions.imposed},
          {arm * others.drive, others.tooth, arm * others.imposed});
+    look(arm * reactions.couple, arm * others.couple);
   }
   return off == 0 ? 0 : off / largest;
 }

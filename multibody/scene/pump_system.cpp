@@ -59,6 +59,8 @@ PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumption
     bevel_teeth_.emplace(pump_, assumptions_.flanks);
     bevel_.emplace(forces_, *bevel_teeth_, shaft_, block_, bodies_.block_origin, teeth_setting_);
   }
+  if (pump_.transfer.kind == TransferKind::pistons && !is_prescribed())
+    walls_.emplace(forces_, pump_, bodies_, pistons_, wall_setting_);
   if (drive_ == Drive::constant_speed || drive_ == Drive::torque || drive_ == Drive::given_turning)
     work_.emplace(
         system_, matter_, forces_, [this](const State& state) { return power_of_drives(state); },
@@ -81,6 +83,7 @@ void PumpSystem::add_shaft_and_block(double omega, const DriveInTime* in_time) {
   shaft_drive_.emplace(drive_, shaft_, omega,
                        in_time != nullptr ? in_time->turning : TurningInTime(),
                        pump_.geometry.joint_circle_radius);
+  if (pump_.transfer.is_joint() && !is_prescribed()) joint_.emplace(pump_, shaft_, block_);
   if (has_gear()) gear_ = gear_of(pump_, matter_, shaft_, block_, bodies_.block_frame, omega);
 }
 
@@ -93,6 +96,7 @@ void PumpSystem::make_states() {
     cylindrical_.constraint().disable(assembly_);
     shaft_drive_->disable(assembly_);
     if (has_gear()) gear_->disable(assembly_);
+    if (joint_) joint_->disable(assembly_);
     // Dynamics: joints and constraints hold them; an imposed block keeps its motion, and so does
     // one with bevel teeth at a given instant: what they push need not be what its motion takes.
     shaft_motion_.disable(dynamics_);

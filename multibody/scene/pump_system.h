@@ -6,7 +6,8 @@
 //   block   turning about z2 on ground (pin and port plate);
 //   piston  on a spherical joint at A to the shaft, with B kept on its bore axis by an inline
 //           joint to the block;
-//   gear    a force along z4 at O4 between shaft and block (mesh), or the block's speed imposed.
+//   gear    a force along z4 at O4 between shaft and block (mesh), or the block's speed imposed;
+//           or another transfer: a joint between their rotations, or bores that touch the pistons.
 // With a prescribed drive, shaft and block are moved and nothing that holds or drives them is
 // built.
 #pragma once
@@ -26,6 +27,8 @@
 #include "scene/tooth_contact.h"
 #include "scene/work_meter.h"
 #include "teeth/teeth_element.h"
+#include "transfers/bore_walls.h"
+#include "transfers/joint.h"
 
 namespace bentaxis::multibody {
 
@@ -75,7 +78,14 @@ class PumpSystem {
   const InlineJoint& cylindrical_bearing() const { return cylindrical_; }
   const GearMesh& gear() const { return *gear_; }
   const ShaftDrive& drive() const { return *shaft_drive_; }
-  bool has_gear() const { return !is_prescribed() && assumptions_.gear == BlockDrive::mesh; }
+  bool has_gear() const {
+    return !is_prescribed() && assumptions_.gear == BlockDrive::mesh &&
+           pump_.transfer.kind == TransferKind::gear;
+  }
+  /// A joint between shaft and block, and the walls that turn the block; else null.
+  const BlockJoint* joint() const { return joint_ ? &*joint_ : nullptr; }
+  const BoreWalls* walls() const { return walls_ ? &*walls_ : nullptr; }
+  WallSetting& wall_setting() { return wall_setting_; }
   /// Whether the gear is a constraint; bevel teeth, and compliant ones of a pump that is simulated,
   /// are not.
   bool has_rigid_gear() const { return has_gear() && !teeth_ && !bevel_; }
@@ -85,10 +95,12 @@ class PumpSystem {
   /// Bevel teeth in contact; else null. At given instants the block's motion is imposed beside
   /// them.
   const TeethElement* bevel() const { return bevel_ ? &*bevel_ : nullptr; }
-  /// Whether the block's motion is imposed on its own joint.
+  /// Whether the block's motion is imposed on its own joint: also at given instants where teeth or
+  /// walls push it.
   bool block_is_imposed() const {
-    return !is_prescribed() &&
-           (!has_gear() || (bevel_.has_value() && drive_ == Drive::given_acceleration));
+    if (is_prescribed() || pump_.transfer.is_joint()) return false;
+    const bool pushed = bevel_.has_value() || pump_.transfer.kind == TransferKind::pistons;
+    return pushed ? drive_ == Drive::given_acceleration : !has_gear();
   }
   TeethSetting& teeth_setting() { return teeth_setting_; }
   /// Torques that they exert on the block about z2 and on the shaft about z1, Nm.
@@ -159,6 +171,9 @@ class PumpSystem {
   std::optional<BevelTeeth> bevel_teeth_;
   TeethSetting teeth_setting_;
   std::optional<TeethElement> bevel_;
+  std::optional<BlockJoint> joint_;
+  WallSetting wall_setting_;
+  std::optional<BoreWalls> walls_;
   std::optional<WorkMeter> work_;
   SimTK::State assembly_, dynamics_;
 };

@@ -140,8 +140,8 @@ class Case:
             return number(value * unit)
 
         milli, bar, per_rpm, kg_mm2 = Fraction(1, 1000), Fraction(10**5), 30 / mp.pi, Fraction(1, 10**6)
-        if data.get("schema") != 1 or data["pump"].get("type", "bent_axis_bevel") != "bent_axis_bevel":
-            raise Refused(f"{path}: only schema 1 and pump type bent_axis_bevel are known")
+        if data.get("schema") != 1 or data["pump"].get("type", "bent_axis") not in ("bent_axis", "bent_axis_bevel") or "transfer" in data:
+            raise Refused(f"{path}: only schema 1 and pumps with a bevel gear are known")
         pump, operation, pressure = data["pump"], data["operation"], data["pressure"]
 
         self.pistons = pump["pistons"]

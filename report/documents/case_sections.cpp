@@ -14,6 +14,71 @@ report::CaseSection case_section(const Case& the_case) {
   return {the_case.file.filename().string(), the_case.entries};
 }
 
+namespace {
+
+// What carries the block round, as far as both models take it from one source.
+std::vector<report::CommonInput> transfer_inputs(const Case& the_case, bool motion) {
+  std::vector<report::CommonInput> inputs;
+  switch (the_case.pump.transfer.kind) {
+    case TransferKind::gear:
+      inputs.push_back(
+          {"line of action of the teeth (22)",
+           the_case.pump.gear.contact == ToothContact::teeth
+               ? "of each pair where it touches; the arm (d/2) cos alpha_p, over which Rcs is "
+                 "stated"
+           : the_case.pump.gear.flanks == Flanks::two
+               ? "one for each flank, whose separating part pushes the gears apart; written once "
+                 "in "
+                 "each model"
+               : "as printed, turned by the sense of rotation; written once in each model",
+           the_case.pump.gear.flanks == Flanks::two
+               ? "high-precision instants and the frame of O4; what one line of action would "
+                 "change is "
+                 "among the limits of validity"
+               : "high-precision curves and the frame of O4 check the algebra; that real teeth "
+                 "push "
+                 "otherwise backwards and on the other flank is among the limits of validity"});
+      break;
+    case TransferKind::constant_velocity:
+      inputs.push_back(
+          {"constant-velocity joint",
+           "ideal: no friction, no play. The analytic model has its couple in closed form. The "
+           "multibody model has one equation of the rotations of shaft and block, and Simbody "
+           "finds the couple",
+           "high-precision curves; the couple does no work; free bodies of shaft and block"});
+      break;
+    case TransferKind::cardan:
+      inputs.push_back(
+          {"universal joint",
+           "ideal: no friction, no play, no mass of the cross; both take the arms' phase from the "
+           "case. The analytic model has angle and couple in closed form. The multibody model "
+           "keeps the arms at right angles, and Simbody finds motion and couple. Given states are "
+           "held to one law for both",
+           "high-precision curves; a cross between two forks (universal mobilizer of Simbody); the "
+           "couple does no work; free bodies of shaft and block"});
+      break;
+    case TransferKind::pistons:
+      inputs.push_back(
+          {"law of the contact of piston and bore",
+           "N = k x0 (x/x0)^e (1 + c x') at the point D of the piston's axis, without friction; "
+           "written once in each model, which finds approach and rate on its own (closed form; "
+           "spheres in cylinders)",
+           "high-precision curves; hand-overs from the geometry alone; free bodies; rigid walls "
+           "are its limit in proportion to 1/k"});
+      if (!motion)
+        inputs.push_back(
+            {"which lag counts at constant speed",
+             "the rules of docs/transfer.md, and that the lag's rate and the block's inertia are "
+             "neglected; each model finds free play and root from its own torques",
+             "high-precision curves; moments made for each rule; simulate, which neglects "
+             "neither"});
+      break;
+  }
+  return inputs;
+}
+
+}  // namespace
+
 std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion,
                                                bool oil_follows) {
   const std::string once = motion ? ", asked by each model at its own block angle"
@@ -48,25 +113,13 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
       {"law of piston friction",
        the_case.pump.friction.regularization > 0 ? "Fc tanh(v/v_reg) + cv v" : "Fc sign(v) + cv v",
        "high-precision curves; power balance; written once in each model"},
-      {"line of action of the teeth (22)",
-       the_case.pump.gear.contact == ToothContact::teeth
-           ? "of each pair at its contact point; the arm (d/2) cos alpha_p, over which Rcs is "
-             "stated"
-       : the_case.pump.gear.flanks == Flanks::two
-           ? "one for each flank, whose separating part pushes the gears apart; written once in "
-             "each model"
-           : "as printed, turned by the sense of rotation; written once in each model",
-       the_case.pump.gear.flanks == Flanks::two
-           ? "high-precision instants and the frame of O4; what one line of action would change is "
-             "among the limits of validity"
-           : "high-precision curves and the frame of O4 check the algebra; that real teeth have "
-             "another line of action in reverse rotation and on the other flank is among the "
-             "limits of validity"},
       {"law of shaft friction (38)", "Td (1 - Ct) + Cs omega", "power balance of each model"},
       {"rigid bodies, points A and B on the piston's axis, no clearance", "assumed",
        "not in this program: a rig or an elastic model"},
       {"frames, signs and the names of the reactions", "docs/theory.md",
        "free-body diagrams written in the tests; signs printed in the paper"}};
+  const auto of_transfer = transfer_inputs(the_case, motion);
+  inputs.insert(inputs.begin() + 4, of_transfer.begin(), of_transfer.end());
   if (the_case.pump.gear.contact == ToothContact::teeth) {
     inputs.push_back(
         {"flexibility of a slice of teeth",
@@ -101,19 +154,21 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
         {drive.kind == DriveKind::motor ? "the motor's torque over its speed" : "curve over time",
          "one monotone cubic through " + drive.curve.file.filename().string() + " for both models",
          "its values, slopes and integral in the tests"});
-  inputs.push_back(
-      the_case.pump.gear.contact == ToothContact::compliant
-          ? report::CommonInput{"contact law of the teeth",
-                                "F = k x0 (x/x0)^e (1 + c x'), from one line of action per flank; "
-                                "written once in each model",
-                                "stored trajectories; rigid teeth are its limit in proportion to "
-                                "1/k"}
-      : the_case.pump.gear.contact == ToothContact::teeth
-          ? report::CommonInput{"integration of the motion",
-                                "one integrator, run with each model's own accelerations",
-                                "another tolerance; work balance of each model"}
-          : report::CommonInput{"rigid teeth", "psi = theta (1:1), no play",
-                                "not in this program: a rig; compliant teeth"});
+  if (the_case.pump.transfer.kind == TransferKind::gear)
+    inputs.push_back(
+        the_case.pump.gear.contact == ToothContact::compliant
+            ? report::
+                  CommonInput{"contact law of the teeth",
+                              "F = k x0 (x/x0)^e (1 + c x'), from one line of action per flank; "
+                              "written once in each model",
+                              "stored trajectories; rigid teeth are its limit in proportion to "
+                              "1/k"}
+        : the_case.pump.gear.contact == ToothContact::teeth
+            ? report::CommonInput{"integration of the motion",
+                                  "one integrator, run with each model's own accelerations",
+                                  "another tolerance; work balance of each model"}
+            : report::CommonInput{"rigid teeth", "psi = theta (1:1), no play",
+                                  "not in this program: a rig; compliant teeth"});
   inputs.push_back({"instants of events between steps",
                     "one bisection, of the events that each model finds in its own steps",
                     "stored trajectories; roots of known functions in the tests"});

@@ -107,7 +107,7 @@ bool shows(const report::Figure& figure, const std::vector<Channel>& channels) {
 }  // namespace
 
 std::vector<report::Figure> comparison_figures(const ComparisonResult& r) {
-  const ChannelLayout layout(r.first.the_case.pump.geometry.pistons);
+  const ChannelLayout layout(r.first.the_case.pump);
   const auto wanted = r.options.channels.of(layout);
   auto figures = channel_figures({&r.analytic, &r.multibody}, r.without_viscous);
   std::erase_if(figures, [&](const auto& figure) { return !shows(figure, wanted); });

@@ -101,7 +101,7 @@ Figure tooth_flanks(const DiagramRun& run, const ChannelLayout& at) {
   Values plus, minus;
   for (const std::size_t row : curve_rows(run)) {
     const double force = std::abs(run.table.at(row, at.Rcs()));
-    const bool drives = run.table.at(row, at.Tcs()) >= 0;
+    const bool drives = run.table.at(row, at.carrying()) >= 0;
     const bool known = is_computed(run.table.at(row, at.Rcs()));
     plus.push_back(!known ? not_computed() : drives ? force : 0);
     minus.push_back(!known ? not_computed() : drives ? 0 : force);
@@ -149,7 +149,7 @@ Figure chamber(const DiagramRun& run, const ChannelLayout& at) {
 }  // namespace
 
 std::vector<Figure> force_figures(const DiagramRun& run) {
-  const ChannelLayout at(run.the_case.pump.geometry.pistons);
+  const ChannelLayout at(run.the_case.pump);
   const auto has = [&](std::size_t channel) { return any_computed(column(run, channel)); };
   std::vector<Figure> figures;
   if (run.table.rows() < 2) return figures;

@@ -436,7 +436,7 @@ Section left_out_section(const DataModel& model) {
 }
 
 Section reactions_section(const DataModel& model, const Identification& result) {
-  const ChannelLayout layout(model.base().pump.geometry.pistons);
+  const ChannelLayout layout(model.base().pump);
   Section section;
   section.title = "How well each reaction is known";
   section.text =
@@ -492,7 +492,7 @@ Section search_section(const DataModel& model, const Identification& result) {
 std::vector<report::Figure> figures_of(const DataModel& model, const Identification& result) {
   std::vector<report::Figure> figures;
   if (!result.bands.empty()) {
-    const ChannelLayout layout(model.base().pump.geometry.pistons);
+    const ChannelLayout layout(model.base().pump);
     report::BarsFigure known{{"half width of the 95 % band", "% of peak"}, {}};
     for (const ReactionBand& band : result.bands)
       known.bars.push_back({layout.channels()[band.column].name, 0, 100 * band.half_width});
@@ -548,7 +548,7 @@ std::string headline_of(const DataModel& model, const Identification& result) {
   const auto [best, worst] = std::minmax_element(
       result.bands.begin(), result.bands.end(),
       [](const ReactionBand& a, const ReactionBand& b) { return a.half_width < b.half_width; });
-  const ChannelLayout layout(model.base().pump.geometry.pistons);
+  const ChannelLayout layout(model.base().pump);
   return text + fmt::format("; reactions are known {}to {:.2g} % ({}) .. {:.2g} % ({}) of peak",
                             unsettled(result) ? "roughly (posterior not settled) " : "",
                             100 * best->half_width, layout.channels()[best->column].name,
@@ -697,7 +697,7 @@ std::string unknowns_csv(const DataModel& model, const Identification& result) {
 
 std::string bands_csv(const DataModel& model, const Identification& result) {
   if (result.bands.empty()) return "";
-  const ChannelLayout layout(model.base().pump.geometry.pistons);
+  const ChannelLayout layout(model.base().pump);
   std::string text = "theta_deg";
   for (const ReactionBand& band : result.bands)
     for (const char* part : {"q025", "q500", "q975"})

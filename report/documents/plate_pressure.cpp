@@ -70,7 +70,7 @@ report::Figure plate_pressure(const DiagramRun& run) {
   constexpr std::size_t kMaxFrames = 18;
   const PumpParameters& pump = run.the_case.pump;
   const Geometry& g = pump.geometry;
-  const ChannelLayout at(g.pistons);
+  const ChannelLayout at(pump);
   const ResultTable& table = run.table;
   DrawingFigure drawing;
   drawing.looks = {{"edges of the ports", 9, false},

@@ -73,7 +73,7 @@ class Search {
 
   void choose_columns(const study::Outcome& outcome, const ResultTable& result,
                       const ResultTable& reference) {
-    const ChannelLayout layout(base_.pump.geometry.pistons);
+    const ChannelLayout layout(base_.pump);
     reactions_ = layout.reactions();
     for (const study::GroupLine& line : outcome.lines)
       for (const compare::ReferenceChannel& channel : line.channels) {

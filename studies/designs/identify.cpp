@@ -85,7 +85,7 @@ struct DataModel::Implementation {
   Scratch fresh() const {
     Scratch scratch;
     scratch.of_branch.assign(branches.size(), base);
-    const ChannelLayout layout(base.pump.geometry.pistons);
+    const ChannelLayout layout(base.pump);
     for (const std::size_t column : wanted)
       scratch.table.channels.push_back(layout.channels()[column]);
     return scratch;
@@ -97,9 +97,9 @@ struct DataModel::Implementation {
 
   // Lets the kernel compute what it can.
   void use_kernel() {
-    const ChannelLayout layout(base.pump.geometry.pistons);
+    const ChannelLayout layout(base.pump);
     const auto gives = [&](std::size_t column) {
-      return column < layout.reactions() || column == layout.Tcs();
+      return column < layout.reactions() || (layout.has(Quantity::Tcs) && column == layout.Tcs());
     };
     std::set<std::size_t> all;
     for (State& state : states) {
@@ -144,8 +144,11 @@ struct DataModel::Implementation {
       table.values.resize(rows * wanted.size());
     }
     // The torque on the block is the tooth force's on its arm.
+    const auto is_carrying = [&](std::size_t column) {
+      return layout.has(Quantity::Tcs) && column == layout.Tcs();
+    };
     const auto source = [&](std::size_t column) {
-      return column == layout.Tcs() ? layout.Rcs() : column;
+      return is_carrying(column) ? layout.Rcs() : column;
     };
     analytic::BatchOutputs outputs(layout.reactions());
     for (const std::size_t column : wanted)
@@ -154,8 +157,7 @@ struct DataModel::Implementation {
     const Gear& gear = scratch.the_case.pump.gear;
     for (std::size_t c = 0; c < wanted.size(); ++c) {
       double factor = 1 / table.channels[c].unit_in_si;
-      if (wanted[c] == layout.Tcs())
-        factor *= gear.pitch_diameter / 2 * std::cos(gear.pressure_angle);
+      if (is_carrying(wanted[c])) factor *= gear.pitch_diameter / 2 * std::cos(gear.pressure_angle);
       const double* values = scratch.columns->column(source(wanted[c]));
       for (std::size_t row = 0; row < rows; ++row) {
         if (!std::isfinite(values[row])) return false;

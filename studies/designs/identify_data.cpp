@@ -124,7 +124,7 @@ std::vector<Datum> read_curves(TableReader in, const fs::path& folder, const Cas
   const Use use = read_use(in);
   const std::string where = in.text("where", file.filename().string());
   in.finish();
-  const ChannelLayout layout(base.pump.geometry.pistons);
+  const ChannelLayout layout(base.pump);
   std::vector<Datum> curves;
   for (const std::string& name : channels) {
     const auto channel = std::find_if(layout.channels().begin(), layout.channels().end(),

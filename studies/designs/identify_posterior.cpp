@@ -332,7 +332,7 @@ void bands_of(const DataModel& model, const IdentifyOptions& options, Identifica
   study::for_each_of(posterior.count, options.threads, progress, [&](std::size_t d) {
     turns[d] = model.turn(std::span(posterior.unknowns).subspan(d * model.size(), model.size()));
   });
-  const ChannelLayout layout(model.base().pump.geometry.pistons);
+  const ChannelLayout layout(model.base().pump);
   result.theta_deg = turns[0].theta_deg;
   const std::size_t rows = turns[0].rows();
   for (std::size_t column = 0; column < layout.reactions(); ++column) {

@@ -286,7 +286,7 @@ Output output(const std::string& name, const Case& base) {
     const bool budget = of.starts_with("budget.");
     if (budget) of = of.substr(7);
     o.source = budget ? Source::budget : Source::curve;
-    const ChannelLayout layout(base.pump.geometry.pistons);
+    const ChannelLayout layout(base.pump);
     const auto& channels = budget ? budget_channels(base) : layout.channels();
     if (!find_channels(of, channels, o)) unknown(name, base);
     o.name = *found + ":" + (budget ? "budget." : "") + o.item;
@@ -302,7 +302,7 @@ Output output(const std::string& name, const Case& base) {
 
 std::vector<std::string> output_names(const Case& base) {
   std::vector<std::string> names;
-  const ChannelLayout layout(base.pump.geometry.pistons);
+  const ChannelLayout layout(base.pump);
   for (const Channel& c : layout.channels())
     if (can_be_asked_for(c) && c.piston <= 1) names.push_back("max:" + c.name);
   for (const Channel& c : layout.channels()) {  // vectors
@@ -413,7 +413,7 @@ class Turn {
     return not_computed();
   }
   double efficiency(const Output& o) {
-    const std::size_t column = ChannelLayout(ready_.the_case.pump.geometry.pistons).Td();
+    const std::size_t column = ChannelLayout(ready_.the_case.pump).Td();
     std::vector<double> torque;
     for (std::size_t row = 0; row < run_.table.rows(); ++row)
       torque.push_back(run_.table.at(row, column));

@@ -46,6 +46,10 @@ bool is_of_closed_form(const Variable& variable, const Case& base) {
 
 bool is_exact(const Variable& variable, const Case& base) {
   if (base.pump.gear.contact == ToothContact::teeth) return false;
+  // Where psi differs from theta the chambers' pressures follow the block.
+  if (base.pump.transfer.kind != TransferKind::gear &&
+      base.pump.transfer.kind != TransferKind::constant_velocity)
+    return false;
   // A spline through points of a computed curve is another curve.
   if (base.pressure.kind == PressureKind::hydraulic) return base.pressure.points == 0;
   return is_of_closed_form(variable, base);
@@ -355,7 +359,7 @@ std::vector<std::size_t> find_exact(Sensitivities& s, const std::vector<std::siz
   std::vector<StatisticRates> statistics;
   for (const std::size_t o : outputs)
     statistics.emplace_back(s.outputs[o], s.scales[o], turn.directions());
-  const std::size_t reactions = ChannelLayout(s.base.pump.geometry.pistons).reactions();
+  const std::size_t reactions = ChannelLayout(s.base.pump).reactions();
   turn.for_each_row([&](std::size_t, const auto& values, const auto& derivatives) {
     for (StatisticRates& statistic : statistics) statistic.add(values, derivatives, reactions);
   });
@@ -566,7 +570,7 @@ Sensitivities sensitivities(const Case& base, const std::vector<Variable>& varia
                             const study::PartProgress& progress_of, bool keep_finished) {
   study::require_memory(base, study::Kept::table, study::Way::driven);
   Sensitivities s = begin(base, variables, outputs, model);
-  const ChannelLayout layout(base.pump.geometry.pistons);
+  const ChannelLayout layout(base.pump);
   const bool analytic = model == study::Model::analytic;
   const auto exact_output = [&](std::size_t o) {
     return analytic && is_exact(s.outputs[o], layout) && is_computed(s.values[o]);

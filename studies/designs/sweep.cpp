@@ -75,7 +75,7 @@ struct Scale {
 };
 
 Output peak_of_group(const Output& of, const Case& base) {
-  const ChannelLayout layout(base.pump.geometry.pistons);
+  const ChannelLayout layout(base.pump);
   const Channel& channel = layout.channels()[of.columns.front()];
   Output peak = of;
   peak.statistic = Statistic::peak;

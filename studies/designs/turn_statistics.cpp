@@ -46,11 +46,13 @@ bool stays_in_reach(const Family& family) {
   const auto leaves = [](const Variable& v) { return v.parameter().changes_model; };
   return base.pressure.kind != PressureKind::hydraulic &&
          base.pump.gear.contact != ToothContact::teeth &&
+         (base.pump.transfer.kind == TransferKind::gear ||
+          base.pump.transfer.kind == TransferKind::constant_velocity) &&
          std::none_of(family.variables().begin(), family.variables().end(), leaves);
 }
 
 std::optional<TurnOutputs> turn_outputs(const std::vector<Output>& outputs, const Case& base) {
-  const ChannelLayout layout(base.pump.geometry.pistons);
+  const ChannelLayout layout(base.pump);
   TurnOutputs result;
   for (const Output& o : outputs) {
     TurnOutputs::Place place{.statistic = o.statistic};

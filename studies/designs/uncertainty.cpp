@@ -161,7 +161,7 @@ void check(const SampledOutputs& sampled, const UncertaintyOptions& options) {
 }  // namespace
 
 std::vector<std::size_t> banded_channels(const Case& the_case) {
-  const ChannelLayout layout(the_case.pump.geometry.pistons);
+  const ChannelLayout layout(the_case.pump);
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < layout.channels().size(); ++i)
     if (const Channel& c = layout.channels()[i]; c.kind == ChannelKind::reaction && c.piston <= 1)
@@ -209,7 +209,7 @@ UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& op
   for (std::size_t row = 0; row < designs.rows(); ++row)
     result.theta_deg.push_back(360.0 * static_cast<double>(row * designs.stride()) /
                                static_cast<double>(result.angles));
-  const ChannelLayout layout(the_case.pump.geometry.pistons);
+  const ChannelLayout layout(the_case.pump);
   for (std::size_t c = 0; c < designs.channels().size(); ++c) {
     const std::size_t first = designs.before_curves() + c * designs.rows();
     if (!is_computed(nominal[first])) continue;  // the block's speed is imposed: no tooth force

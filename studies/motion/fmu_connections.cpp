@@ -236,7 +236,7 @@ PumpSide pump_side(const Case& the_case, bool oil_follows) {
       side.units.push_back(fmu::measure_named(channel.unit) ? channel.unit : "?");
     }
   };
-  add(ChannelLayout(the_case.pump.geometry.pistons).channels());
+  add(ChannelLayout(the_case.pump).channels());
   add(motion_channels());
   side.takes.shaft = side.takes.torque = true;
   if (!oil_follows) {

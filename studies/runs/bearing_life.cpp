@@ -192,7 +192,7 @@ LifePoint life_point(const Case& the_case, const ResultTable& table, double shar
   point.share = share;
   point.speed_rpm = the_case.operation.speed_rpm;
   point.theta_deg = table.theta_deg;
-  const ChannelLayout at(the_case.pump.geometry.pistons);
+  const ChannelLayout at(the_case.pump);
   BearingLoads &tapered = point.loads[0], &cylindrical = point.loads[1];
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const double fr = std::hypot(table.at(row, at.Rb1(0)), table.at(row, at.Rb1(1)));

@@ -61,6 +61,8 @@ multibody::Scene ChannelChoice::scene_for(const ChannelLayout& layout,
                                           std::optional<multibody::Scene> asked) const {
   const auto wanted = of(layout);
   if (all()) return asked.value_or(multibody::Scene::full);
+  // Walls that turn the block need its balance, and with it the full pump.
+  if (!asked && layout.transfer() == TransferKind::pistons) return multibody::Scene::full;
   if (!asked) return multibody::smallest_scene(wanted);
   for (const Channel& channel : wanted)
     if (!multibody::computes(*asked, channel))

@@ -7,6 +7,7 @@
 
 #include "bentaxis/analytic/body_loads.h"
 #include "bentaxis/analytic/budget.h"
+#include "bentaxis/analytic/constant_speed.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/teeth.h"
 #include "bentaxis/files/csv.h"
@@ -54,7 +55,7 @@ double copies_of(Kept kept) {
 
 void require_rows(const Case& the_case, Kept kept, double rows, const std::string& because,
                   const std::string& advice) {
-  const double columns = static_cast<double>(ChannelLayout(the_case.pump.geometry.pistons).size());
+  const double columns = static_cast<double>(ChannelLayout(the_case.pump).size());
   const double needed = copies_of(kept) * rows * columns * sizeof(double);
   constexpr double kLittle = 5e7;  // not worth asking the system, which takes its time
   if (needed < kLittle) return;
@@ -114,6 +115,7 @@ PreparedCase prepare(Case the_case, const PartProgress& progress_of) {
   require_mesh(the_case);
   std::optional<hydraulics::SteadyState> state;
   if (the_case.pressure.kind == PressureKind::hydraulic) {
+    require_constant_speed(the_case);
     state = hydraulics::steady_state(the_case, {}, progress_of("hydraulics"));
     hydraulics::give_to(the_case, *state);
   }
@@ -208,6 +210,7 @@ bool computes(const RunOptions& options, const Assumptions& assumptions, const C
 void stream_analytic(const PreparedCase& ready, const Assumptions& assumptions,
                      const std::function<bool(const Channel&)>& wanted, OutputFolder::Stream& out,
                      const RowVisitor& visit, const PartProgress& progress_of) {
+  analytic::require_free_play(ready.the_case);
   const analytic::Model model(ready.the_case.pump, assumptions);
   std::vector<Channel> channels;
   std::vector<std::size_t> columns;
@@ -219,9 +222,12 @@ void stream_analytic(const PreparedCase& ready, const Assumptions& assumptions,
   out.write(csv_header(channels));
   std::string line;
   std::vector<double> values(columns.size());
+  analytic::PlacedSamples placed(model, ready.the_case);
   stream_rows(
       "analytic", model.layout(), ready.the_case, ready.pressure,
-      [&](const Instant& instant, std::vector<double>& row) { model.evaluate(instant, row); },
+      [&](const Instant& instant, std::vector<double>& row) {
+        analytic::evaluate_at_constant_speed(model, placed.at(instant), row);
+      },
       [&](double theta_deg, const std::vector<double>& row) {
         line.clear();
         if (visit) visit(theta_deg, row.data());

@@ -111,7 +111,7 @@ std::optional<Turn> turn_of(const Facts& f) {
     const PressureTrace trace(c.pressure);
     const Samples samples = sample_case(c, trace);
     const ResultTable table = analytic::run(c, c.analytic, samples);
-    const ChannelLayout at(c.pump.geometry.pistons);
+    const ChannelLayout at(c.pump);
     Turn turn;
     turn.limits = analytic::check_validity(c, c.analytic, samples, table);
     const std::size_t rows = table.rows();

@@ -93,7 +93,7 @@ class Maker {
            result_.options.scene.scene == multibody::Scene::full;
   }
   bool has_budget() const {
-    const ChannelLayout layout(result_.first.the_case.pump.geometry.pistons);
+    const ChannelLayout layout(result_.first.the_case.pump);
     return !integrated() && result_.options.scene.scene == multibody::Scene::full &&
            result_.options.channels.wants(layout.channels()[layout.Td()]);
   }
@@ -211,7 +211,7 @@ double Maker::torque_driven_speed_error(const multibody::IntegrationOptions& int
 // allowed of these two leaves it.
 void Maker::note_film_point_errors() {
   const ComparisonResult& r = result_;
-  const ChannelLayout layout(r.first.the_case.pump.geometry.pistons);
+  const ChannelLayout layout(r.first.the_case.pump);
   const std::vector<Channel>& channels = layout.channels();
   const auto allowed = [&](std::size_t column) {
     return r.tolerance * compare::scale_of(r.analytic, channels[column], zero_scales_);
@@ -256,7 +256,7 @@ bool Maker::may_be_missing(const Channel& channel, std::size_t row) const {
       !computes(multibody_run(0), r.second.the_case.multibody, channel))
     return true;
   if (channel.quantity != "xh" && channel.quantity != "yh") return false;
-  const std::size_t fh = ChannelLayout(r.first.the_case.pump.geometry.pistons).Fh();
+  const std::size_t fh = ChannelLayout(r.first.the_case.pump).Fh();
   return r.analytic.at(row, fh) == 0 || r.multibody.at(row, fh) == 0;
 }
 

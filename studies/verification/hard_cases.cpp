@@ -164,8 +164,7 @@ std::vector<HardOutcome> run_hard_case(const HardCase& hard, const PartProgress&
   const Case the_case = read_case(hard.folder / "case.toml");
   const PressureTrace pressure(the_case.pressure);
   const Samples samples = sample_case(the_case, pressure);
-  const ResultTable reference =
-      read_reference(hard, ChannelLayout(the_case.pump.geometry.pistons), samples);
+  const ResultTable reference = read_reference(hard, ChannelLayout(the_case.pump), samples);
   compare::Options options;
   options.zero_scales = zero_scales(the_case, samples);
   const Progress progress = progress_of(hard.name);

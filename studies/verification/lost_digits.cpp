@@ -31,7 +31,7 @@ std::string loss_text(double loss) {
 // the round-off of the way between the axes, which a small gear's arm does not dwarf.
 void add_gear_arm(const PumpParameters& pump, const Assumptions& assumptions,
                   std::map<std::string, double>& groups) {
-  if (assumptions.gear == BlockDrive::imposed) return;
+  if (assumptions.gear == BlockDrive::imposed || pump.transfer.kind != TransferKind::gear) return;
   const double loss = std::numeric_limits<double>::epsilon() *
                       (1 + std::abs(pump.geometry.axis_offset) / (pump.gear.pitch_diameter / 2));
   for (const char* group : {"Rcs", "Rcn", "Fh", "Th", "Rb1", "Rb2", "Td"}) {

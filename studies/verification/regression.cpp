@@ -86,7 +86,7 @@ void hold_to_curves(const compare::ReferenceDescription& description, const Case
     };
     if (std::none_of(description.curves.begin(), description.curves.end(), holds)) continue;
     const Case& the_case = case_of(which);
-    const ChannelLayout layout(the_case.pump.geometry.pistons);
+    const ChannelLayout layout(the_case.pump);
     std::vector<compare::ReferenceCurve> curves;
     for (const auto& curve : description.curves)
       if (holds(curve))

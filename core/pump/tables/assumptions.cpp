@@ -18,13 +18,19 @@ Table assumptions_table(const std::string& model) {
                              },
                              .words = "that of `[piston]`"},
                             model + " model: inertia of the pistons, as in `[piston]`"),
-                     choice("gear", FIELD((c.*kModel).gear), {"mesh", "imposed"}, "mesh",
-                            model +
-                                " model: how the block is driven: by the tooth force, or by a "
-                                "speed imposed on the block's joint, as in the paper's ADAMS run")},
-      .rules = {{.key = "inertia", .after = "gear", .broken = [](const Case& c) {
-                   return piston_inertia_refusal((c.*kModel).inertia, c.pump);
-                 }}}};
+                     choice(
+                         "gear", FIELD((c.*kModel).gear), {"mesh", "imposed"}, "mesh",
+                         model +
+                             " model: how the block is driven: by the tooth force, or by "
+                             "a speed imposed on the block's joint, as in the paper's ADAMS run")},
+      .rules = {
+          {.key = "inertia",
+           .after = "gear",
+           .broken =
+               [](const Case& c) { return piston_inertia_refusal((c.*kModel).inertia, c.pump); }},
+          {.key = "gear", .after = "gear", .broken = [](const Case& c) {
+             return imposed_refusal((c.*kModel).gear, c.pump);
+           }}}};
 }
 
 }  // namespace

@@ -50,6 +50,7 @@ inline constexpr Unit kLeakage{"l/min/bar", [](double x) { return x / 6e4 / kPas
 
 inline const When kHydraulic{"pressure", "kind", {"hydraulic"}};
 inline const When kTeeth{"gear", "contact", {"teeth"}};
+inline const When kGear{"transfer", "kind", {"gear"}};
 
 // ---- Where a parameter is kept
 
@@ -199,6 +200,7 @@ std::string arc_refusal(const PortArc& arc);
 
 Table top_level();
 Table pump_table();
+Table transfer_table();
 Table gear_table();
 Table bearings_table();
 Table piston_table();

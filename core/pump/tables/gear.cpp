@@ -7,6 +7,16 @@ namespace {
 const When kCompliant{"gear", "contact", {"compliant"}};
 const When kGivingWay{"gear", "contact", {"compliant", "teeth"}};
 
+// The gear's data: needed where it carries the block round, else there where the file has it.
+const Part kGearData{kGear,
+                     [](const Case& c) {
+                       return c.pump.transfer.kind == TransferKind::gear ||
+                              c.pump.gear.pitch_diameter != 0;
+                     },
+                     [](Case& c) {
+                       // Until the key is read: the table is there.
+                       if (c.pump.gear.pitch_diameter == 0) c.pump.gear.pitch_diameter = 1;
+                     }};
 const Part kCompliance = part_at([](auto& c) { return &c.pump.gear.compliance; }, kCompliant);
 const Part kToothData = part_at([](auto& c) { return &c.pump.gear.teeth; }, kTeeth);
 // Teeth that give way, of either kind; the keys that both have come after those that make one.
@@ -39,6 +49,7 @@ Table gear_table() {
   return {
       .name = "gear",
       .meaning = "bevel gear pair that drives the block",
+      .part = &kGearData,
       .differentiable = always,
       .parameters =
           {number("pitch_diameter_mm", "d = m Z", FIELD(c.pump.gear.pitch_diameter), kMillimetres,
@@ -142,6 +153,14 @@ Table gear_table() {
                                    ? std::string(
                                          "compliant teeth have two flanks: must be \"two\" with "
                                          "contact = \"compliant\" or \"teeth\"")
+                                   : std::string();
+                      }),
+                after("contact",
+                      [](const Case& c) {
+                        const TransferKind kind = c.pump.transfer.kind;
+                        return kind != TransferKind::gear && c.pump.gear.is_compliant()
+                                   ? "must be \"rigid\" beside [transfer] kind = \"" +
+                                         to_string(kind) + "\", which has no gear"
                                    : std::string();
                       }),
                 at_end("contact", [](const Case& c) {

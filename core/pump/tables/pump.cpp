@@ -23,8 +23,9 @@ Table pump_table() {
       .meaning = "main dimensions",
       .differentiable = always,
       .parameters =
-          {choice("type", ChoiceField{}, {"bent_axis_bevel"}, "bent_axis_bevel",
-                  "kind of mechanism"),
+          {choice("type", FIELD(c.pump.type), {"bent_axis", "bent_axis_bevel"}, "bent_axis",
+                  "kind of mechanism; bent_axis_bevel: a bevel gear carries the block round, which "
+                  "`[transfer]` says otherwise"),
            number("pistons", "N", FIELD(c.pump.geometry.pistons), kNoUnit, {1, kMaxPistons},
                   kRequired, "number of pistons",
                   {.also = {"z", "n", "number_of_pistons", "piston_count", "piston_number",

@@ -7,8 +7,10 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "bentaxis/analytic/frozen_lag.h"
 #include "bentaxis/analytic/teeth.h"
 #include "bentaxis/pump/parameters.h"
 #include "bentaxis/results/channels.h"
@@ -20,6 +22,9 @@
 namespace bentaxis::analytic {
 
 struct PreparedPump;
+namespace closed_form {
+enum class WallMode : signed char;
+}
 
 /// A pump prepared for evaluation at any instant. Immutable, so one object serves many threads;
 /// cheap to copy.
@@ -37,6 +42,9 @@ class Model {
   ///
   /// @param instant  motion of shaft and block, and pressures; one pressure per piston. A block
   ///                 that turns exactly as the shaft does takes the shorter algebra of (9)-(23).
+  ///                 A joint prescribes the block's motion: that of the instant is not looked at.
+  ///                 Where pistons carry the block, its walls push by their law, and the rest of
+  ///                 the block's balance is the torque Tb from outside.
   /// @param values   at least layout().reactions() long; SI, ordered by layout(). Rcs is
   ///                 not_computed() where the block speed is imposed.
   /// @throws InputError where the sizes are others
@@ -58,6 +66,25 @@ class Model {
   /// @param teeth   as of reactions()
   void evaluate(const Instant& instant, std::vector<double>& values, MotionChecks* checks = nullptr,
                 TeethAction* teeth = nullptr) const;
+  /// How the block turns where a rigid transfer prescribes it, from how the shaft does.
+  AxisMotion block_motion(const AxisMotion& shaft) const;
+  /// Sets the block's motion and the chambers' pressures of an instant of constant speed, where
+  /// they differ from those at the shaft's angle: with a universal joint, and with pistons that
+  /// carry the block, where the lag is the root of the block's balance at frozen rates
+  /// (docs/transfer.md). Allocates nothing.
+  /// @throws InputError where the block has no free play at this angle; ComputationError where no
+  ///         lag balances the block before a piston leaves its bore
+  void place_at_constant_speed(Instant& instant, const PressureTrace& pressure,
+                               LagRules* rules = nullptr) const;
+  /// The lag alone, of pistons that carry the block.
+  FrozenLag frozen_lag(const Instant& instant, const PressureTrace& pressure) const;
+
+  /// reactions() and evaluate() where an integration holds every wall to a mode.
+  void reactions_held(const Instant& instant, std::vector<double>& values,
+                      const closed_form::WallMode* modes) const;
+  void evaluate_held(const Instant& instant, std::vector<double>& values, MotionChecks* checks,
+                     TeethAction* teeth, const closed_form::WallMode* modes) const;
+
   /// Whether the shaft moves the block by teeth that touch where they are.
   bool has_teeth() const;
 
@@ -95,7 +122,8 @@ class Model {
   };
   template <class Real>
   Settled resolve_tooth_contact(const Instant& instant, std::vector<Real>& values) const;
-  std::optional<Settled> find(const Instant& instant, std::vector<double>& values) const;
+  std::optional<Settled> find(const Instant& instant, std::vector<double>& values,
+                              const closed_form::WallMode* modes) const;
   void act(const Instant& instant, const ToothLag& lag, TeethAction& teeth) const;
 
   PumpParameters pump_;

@@ -10,6 +10,7 @@
 #include "bentaxis/multibody/scene.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/parameters.h"
+#include "bentaxis/pump/pressure.h"
 #include "bentaxis/results/body_loads.h"
 #include "bentaxis/results/budget.h"
 #include "bentaxis/results/channels.h"
@@ -19,6 +20,15 @@
 #include "bentaxis/results/teeth.h"
 
 namespace bentaxis::multibody {
+
+/// Which rule found the lag of a block that pistons turn, at constant speed.
+enum class LagRule {
+  unloaded,       ///< nothing turns the block within its free play: the middle of it
+  driving_side,   ///< walls carry on the side of the direction of rotation
+  trailing_side,  ///< walls carry on the other side
+  within_play,    ///< balance without walls
+};
+inline constexpr std::size_t kLagRules = 4;
 
 /// A pump in Simbody. At each instant shaft and block are set to their motion, Simbody's constraint
 /// equations give the pistons, and reactions follow by the chosen method. The block may move on its
@@ -47,6 +57,20 @@ class Model {
   /// @throws ComputationError where the pump cannot be assembled or constraints are redundant.
   void evaluate(const Instant& instant, std::vector<double>& values,
                 MotionChecks* checks = nullptr);
+
+  /// Motion of the block beside one of the shaft, where a joint turns the block: that motion counts
+  /// in evaluate(), whatever the instant says of the block. Without a joint the block turns as the
+  /// shaft does.
+  AxisMotion block_beside(const AxisMotion& shaft);
+
+  /// All channels at constant speed, where pistons turn the block: the lag is the one at which the
+  /// block is in balance (frozen lag), and the pressures are those at the block's angle.
+  /// @param theta_deg  angle of the shaft, degrees
+  /// @param speed      rad/s
+  /// @throws InputError where the pistons have no free play there
+  /// @throws ComputationError where no lag is found, or the pump cannot be assembled at it
+  LagRule evaluate_at_frozen_lag(double theta_deg, double speed, const PressureTrace& pressure,
+                                 const PortPressures& ports, std::vector<double>& values);
 
   /// Drive torque by cause, and the block's balance, at the instant of the last evaluate(); of the
   /// full pump.

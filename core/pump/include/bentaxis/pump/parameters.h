@@ -103,6 +103,53 @@ struct Gear {
   [[deprecated("use is_compliant")]] bool gives_way() const { return is_compliant(); }
 };
 
+/// What carries the block round.
+enum class TransferKind {
+  gear,               ///< the bevel gear pair, struct Gear
+  constant_velocity,  ///< an ideal constant-velocity joint
+  cardan,             ///< one universal joint with a massless cross, centre O2
+  pistons,            ///< tapered pistons or rods that touch the walls of their bores
+};
+
+/// Names as in a case file, in the order of the enumeration.
+inline const std::vector<std::string>& transfer_names() {
+  static const std::vector<std::string> names = {"gear", "constant_velocity", "cardan", "pistons"};
+  return names;
+}
+inline std::string to_string(TransferKind kind) {
+  return transfer_names()[static_cast<std::size_t>(kind)];
+}
+
+/// One universal joint. The shaft's fork holds the arm (cos t, sin t, 0) in S1, t = theta - phase;
+/// the block's fork the arm (-sin(psi - phase), cos(psi - phase), 0) in S2.
+struct CardanJoint {
+  double phase = 0;  ///< phi, rad
+};
+
+/// Contact of a tapered piston with the wall of its bore. At D = A + l_c e the axis of the piston
+/// may be `clearance` away from that of the bore; with the approach x beyond it the wall pushes
+/// with k x0 (x/x0)^e (1 + c_d x'), never negative; x0 is kWallApproach.
+struct WallContact {
+  double from_joint = 0;   ///< l_c, m, from A along the piston's axis to D
+  double clearance = 0;    ///< h, m, radial
+  double stiffness = 0;    ///< k, N/m, at the approach x0
+  double exponent = 1;     ///< e
+  double dissipation = 0;  ///< c_d, s/m
+};
+inline constexpr double kWallApproach = 1e-6;
+
+/// How the shaft turns the block. Each kind's own data is present when the case file gives it.
+struct Transfer {
+  TransferKind kind = TransferKind::gear;
+  std::optional<CardanJoint> cardan = {};
+  std::optional<WallContact> wall = {};  ///< of kind pistons
+
+  /// Whether the angle of the shaft prescribes that of the block through a joint.
+  bool is_joint() const {
+    return kind == TransferKind::constant_velocity || kind == TransferKind::cardan;
+  }
+};
+
 /// Bearing centres on the shaft axis, z1 in m.
 struct Bearings {
   double tapered_z = 0;      ///< of C1, takes x, y and z
@@ -180,10 +227,14 @@ struct PortPlate {
   PortArc delivery, suction;
 };
 
+/// Word of a case file for the mechanism. Both are bent-axis pumps with any transfer; the second
+/// says that it is a bevel gear.
+enum class PumpType { bent_axis, bent_axis_bevel };
+
 /// All of the pump that the mechanical models need.
 struct PumpParameters {
   Geometry geometry;
-  Gear gear;
+  Gear gear;  ///< unused where the transfer is of another kind
   Bearings bearings;
   PistonMass piston;
   Shaft shaft;
@@ -191,6 +242,14 @@ struct PumpParameters {
   Friction friction;
   std::optional<PortPlate> port_plate;
   double gravity = 9.80665;  ///< m/s2, along -y1
+  Transfer transfer = {};
+  PumpType type = PumpType::bent_axis;
+
+  /// Whether the block has a motion of its own in time.
+  bool block_moves_freely() const {
+    return transfer.kind == TransferKind::pistons ||
+           (transfer.kind == TransferKind::gear && gear.is_compliant());
+  }
 };
 
 /// How the block is driven.
@@ -228,6 +287,10 @@ inline std::string to_string(BlockDrive gear) {
 /// transverse inertia need the centre of mass strictly between A and B.
 std::string piston_inertia_refusal(PistonInertia inertia, const PumpParameters& pump);
 
+/// Why the block of this pump cannot be driven as `drive` asks, as the end of a message; empty
+/// where it can: an imposed speed replaces the gear and nothing else.
+std::string imposed_refusal(BlockDrive drive, const PumpParameters& pump);
+
 /// Ideal gap between the longest distance from a joint A to the axis of its bore and the piston
 /// length that has to span it: where it is not positive the pump cannot be assembled.
 struct AssemblyMargin {
@@ -237,6 +300,9 @@ struct AssemblyMargin {
 
 /// The worst angle for assembly, exactly (the squared distance is a quadratic in cos theta).
 AssemblyMargin assembly_margin(const Geometry& geometry);
+
+/// The same of a pump, for every piston: with a universal joint each has a trajectory of its own.
+AssemblyMargin assembly_margin(const PumpParameters& pump);
 
 /// Distance of a joint A at the angle theta of the shaft from the axis of its bore at the angle psi
 /// of the block, m: what a piston's length must exceed. Angles in rad.

@@ -207,9 +207,12 @@ std::optional<Value> default_of(const Parameter& parameter, const Case& the_case
 NumberRange range_of(const Parameter& parameter, const Case& the_case);
 
 bool holds(const When& when, const Registry& registry, const Case& the_case);
-/// Whether a parameter has something to do: its condition holds, its part is there.
+/// Whether a parameter has something to do: its condition holds, its part is there, and its table
+/// is needed if it ever is.
 bool is_active(const Table& table, const Parameter& parameter, const Registry& registry,
                const Case& the_case);
+/// The same of a table that is there, needed or not: whether a file may have to say it.
+bool is_asked_for(const Parameter& parameter, const Registry& registry, const Case& the_case);
 
 /// A number of the file's unit that the unit converts to `si`, the one with the fewest digits;
 /// where there is none, one that is off by a unit in the last place.

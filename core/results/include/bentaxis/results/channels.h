@@ -28,20 +28,35 @@ struct Channel {
   ChannelKind kind = ChannelKind::reaction;
 };
 
-/// Where each quantity of a pump with N pistons stands in a row of results, and its description.
-/// Pistons count from 0 here; axes are 0, 1, 2 for x, y, z. Cheap to make and to copy.
+/// Where each quantity of a pump with N pistons and a kind of transfer stands in a row of results,
+/// and its description. Pistons count from 0 here; axes are 0, 1, 2 for x, y, z. Cheap to make and
+/// to copy.
 class ChannelLayout {
  public:
-  explicit ChannelLayout(int pistons);
+  explicit ChannelLayout(int pistons, TransferKind transfer = TransferKind::gear);
+  explicit ChannelLayout(const PumpParameters& pump)
+      : ChannelLayout(pump.geometry.pistons, pump.transfer.kind) {}
 
   int pistons() const { return n_; }
+  TransferKind transfer() const { return transfer_; }
+  /// Whether a row has a quantity.
+  bool has(Quantity quantity) const {
+    return (kQuantities[static_cast<std::size_t>(quantity)].transfers &
+            transfers::bit(transfer_)) != 0;
+  }
+  /// Column of the torque about z2 by which gear or joint carry the block round; size() where
+  /// neither does.
+  std::size_t carrying() const {
+    if (has(Quantity::Tcs)) return Tcs();
+    return has(Quantity::TcsJoint) ? TcsJoint(2) : size();
+  }
   std::size_t size() const { return channels_->size(); }
-  /// Number of leading channels that are unknowns of the equilibrium: 5 N + 12.
+  /// Number of leading channels that are unknowns of the equilibrium, of any transfer: 5 N + 12.
   std::size_t reactions() const { return static_cast<std::size_t>(kReactionsEnd.column(n_, 0, 0)); }
   const std::vector<Channel>& channels() const { return *channels_; }
 
   // Column of every quantity: Rs(k, axis), zB(k), Rb1(axis), Td(), ..; the piston where it repeats,
-  // then the axis where it has several.
+  // then the axis where it has several. Only of those that has().
 #define BENTAXIS_COLUMN(identifier, ...)           \
   template <class... Where>                        \
   std::size_t identifier(Where... where) const {   \
@@ -58,11 +73,13 @@ class ChannelLayout {
     static_assert(sizeof...(where) == kPistons + (kHere.components > 1 ? 1 : 0),
                   "the piston where the quantity repeats, the axis where it has several");
     const int list[] = {static_cast<int>(where)..., 0, 0};
-    return static_cast<std::size_t>(kHere.column(n_, kHere.repeated ? list[0] : 0, list[kPistons]));
+    const QuantityPlace place = kPlaces<quantity>[static_cast<std::size_t>(transfer_)];
+    return static_cast<std::size_t>(place.column(n_, kHere.repeated ? list[0] : 0, list[kPistons]));
   }
 
   int n_;
-  std::shared_ptr<const std::vector<Channel>> channels_;  // one list per number of pistons
+  TransferKind transfer_;
+  std::shared_ptr<const std::vector<Channel>> channels_;  // one list per number and transfer
 };
 
 }  // namespace bentaxis

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <string_view>
 
+#include "bentaxis/pump/parameters.h"
+
 namespace bentaxis {
 
 enum class ChannelKind {
@@ -23,47 +25,72 @@ enum class Repeat {
                ///< block
 };
 
+/// Kinds of transfer, as bits by their number in TransferKind.
+namespace transfers {
+constexpr unsigned bit(TransferKind kind) { return 1U << static_cast<unsigned>(kind); }
+inline constexpr unsigned gear = bit(TransferKind::gear), cardan = bit(TransferKind::cardan),
+                          pistons = bit(TransferKind::pistons),
+                          joint = cardan | bit(TransferKind::constant_velocity),
+                          cardan_or_pistons = cardan | pistons, all = gear | joint | pistons;
+}  // namespace transfers
+inline constexpr std::size_t kTransferKinds = 4;
+
 // clang-format off
 // The quantities of a row of results, in their order:
-//   identifier, symbol, repeat, components, unit, kind, group (shares one peak), frame,
-//   on body, by body, at point ('#' is the number of the piston), equation, meaning
-// A component is a letter of the axis, or '-' for a quantity without one.
+//   identifier, symbol, transfers that have it, repeat, components, unit, kind, group (shares one
+//   peak), frame, on body, by body, at point ('#' is the number of the piston), equation, meaning
+// A component is a letter of the axis, or '-' for a quantity without one. Reactions that every
+// transfer has lead the list.
 #define BENTAXIS_QUANTITIES(X) \
-  X(Rs, "Rs", interleaved, "xyz", "N", reaction, "Rs", "S2", "piston #", "shaft", "A#", \
+  X(Rs, "Rs", all, interleaved, "xyz", "N", reaction, "Rs", "S2", "piston #", "shaft", "A#", \
     "(29)-(33)", "joint force") \
-  X(Rc, "Rc", interleaved, "xy", "N", reaction, "Rc", "S2", "piston #", "block", "B#", \
+  X(Rc, "Rc", all, interleaved, "xy", "N", reaction, "Rc", "S2", "piston #", "block", "B#", \
     "(30)-(33)", "bore force") \
-  X(Fh, "Fh", once, "z", "N", reaction, "Fh", "S2", "block", "port-plate film", "(xh, yh)", \
+  X(Fh, "Fh", all, once, "z", "N", reaction, "Fh", "S2", "block", "port-plate film", "(xh, yh)", \
     "(51), (56)", "hydrodynamic force of the port-plate film") \
-  X(Th, "Th", once, "xy", "Nm", reaction, "Th", "S2", "block", "port-plate film", "about O2", \
+  X(Th, "Th", all, once, "xy", "Nm", reaction, "Th", "S2", "block", "port-plate film", "about O2", \
     "(52), (57)", "moment of Fh by its offset") \
-  X(Rcn, "Rcn", once, "xy", "N", reaction, "Rcn", "S2", "block", "pin", "(0, 0, z_pin)", \
+  X(Rcn, "Rcn", all, once, "xy", "N", reaction, "Rcn", "S2", "block", "pin", "(0, 0, z_pin)", \
     "(54), (56)", "pin force") \
-  X(Rcs, "Rcs", once, "z", "N", reaction, "Rcs", "S4", "block", "shaft", "O4", "(55), (57)", \
+  X(Rcs, "Rcs", all, once, "z", "N", reaction, "Rcs", "S4", "block", "shaft", "O4", "(55), (57)", \
     "gear tooth force") \
-  X(Rb1, "Rb1", once, "xyz", "N", reaction, "Rb1", "S1", "shaft", "tapered bearing", "C1", \
+  X(Rb1, "Rb1", all, once, "xyz", "N", reaction, "Rb1", "S1", "shaft", "tapered bearing", "C1", \
     "(39), (42)", "tapered bearing force") \
-  X(Rb2, "Rb2", once, "xy", "N", reaction, "Rb2", "S1", "shaft", "cylindrical bearing", "C2", \
+  X(Rb2, "Rb2", all, once, "xy", "N", reaction, "Rb2", "S1", "shaft", "cylindrical bearing", "C2", \
     "(40), (42)", "cylindrical bearing force") \
-  X(Td, "Td", once, "z", "Nm", reaction, "Td", "S1", "shaft", "prime mover", "about z1", \
+  X(Td, "Td", all, once, "z", "Nm", reaction, "Td", "S1", "shaft", "prime mover", "about z1", \
     "(41), (43)", "drive torque") \
-  X(xh, "xh", once, "x", "mm", derived, "xh_yh", "S2", "block", "port-plate film", "from z2", \
+  X(xh, "xh", all, once, "x", "mm", derived, "xh_yh", "S2", "block", "port-plate film", "from z2", \
     "(53)", "point where Fh acts") \
-  X(yh, "yh", once, "y", "mm", derived, "xh_yh", "S2", "block", "port-plate film", "from z2", \
+  X(yh, "yh", all, once, "y", "mm", derived, "xh_yh", "S2", "block", "port-plate film", "from z2", \
     "(53)", "point where Fh acts") \
-  X(Tcs, "Tcs", once, "z", "Nm", derived, "Tcs", "S2", "block", "shaft (gear) or imposed drive", \
+  X(Tcs, "Tcs", gear, once, "z", "Nm", derived, "Tcs", "S2", "block", "shaft (gear) or imposed drive", \
     "about z2", "(57)", "torque that drives the block") \
-  X(pressure, "p", per_piston, "-", "bar", input, "p", "", "piston #", "oil", "B#", "(24)", \
+  X(TcsJoint, "Tcs", joint, once, "xyz", "Nm", reaction, "Tcs", "S2", "block", "shaft (joint)", \
+    "about O2", "", "couple by which a joint drives the block") \
+  X(Rw, "Rw", pistons, per_piston, "xy", "N", reaction, "Rw", "S2", "piston #", "block (bore wall)", \
+    "D#", "", "wall force on a tapered piston") \
+  X(psi, "psi", cardan_or_pistons, once, "-", "deg", derived, "psi", "", "block", "", "about z2", \
+    "", "angle of the block") \
+  X(psi_speed, "psi", cardan, once, "-", "rpm", derived, "psi_speed", "", "block", "", "about z2", \
+    "", "speed of the block") \
+  X(psi_acceleration, "psi", cardan, once, "-", "rad/s2", derived, "psi_acceleration", "", "block", \
+    "", "about z2", "", "acceleration of the block") \
+  X(lag, "lag", pistons, once, "-", "deg", derived, "lag", "", "block", "", "about z2", "", \
+    "angle of the shaft ahead of the block, theta - psi") \
+  X(Tb, "Tb", pistons, once, "z", "Nm", reaction, "Tb", "S2", "block", "from outside", "about z2", \
+    "", "torque that a given motion of the block needs") \
+  X(pressure, "p", all, per_piston, "-", "bar", input, "p", "", "piston #", "oil", "B#", "(24)", \
     "chamber pressure, gauge") \
-  X(zB, "zB", per_piston, "z", "mm", derived, "zB", "S2", "piston #", "", "B#", "(11)", \
+  X(zB, "zB", all, per_piston, "z", "mm", derived, "zB", "S2", "piston #", "", "B#", "(11)", \
     "position of B on its bore axis") \
-  X(Rs3, "Rs", per_piston, "xyz", "N", derived, "Rs", "S3", "piston #", "shaft", "A#", \
+  X(Rs3, "Rs", all, per_piston, "xyz", "N", derived, "Rs", "S3", "piston #", "shaft", "A#", \
     "(17), (29)", "joint force along the piston (z3) and across it") \
-  X(Tc, "Tc", per_piston, "z", "Nm", derived, "Tc", "S2", "block", "piston #", "about z2", \
+  X(Tc, "Tc", all, per_piston, "z", "Nm", derived, "Tc", "S2", "block", "piston #", "about z2", \
     "(57)", "share of the pistons' torque on the block") \
-  X(power_residual, "power_residual", once, "-", "Nm", check, "power_residual", "", "pump", "", \
+  X(power_residual, "power_residual", all, once, "-", "Nm", check, "power_residual", "", "pump", "", \
     "", "", "sum of all power over omega (virtual work per radian)") \
-  X(axis_moment, "axis_moment", per_piston, "-", "Nm", check, "axis_moment", "", "piston #", "", \
+  X(axis_moment, "axis_moment", all, per_piston, "-", "Nm", check, "axis_moment", "", "piston #", "", \
     "centre of mass", "", "moment about the piston's own axis")
 // clang-format on
 
@@ -77,6 +104,7 @@ enum class Quantity {
 /// One entry of the list above.
 struct QuantityEntry {
   std::string_view symbol;
+  unsigned transfers;
   Repeat repeat;
   std::string_view components, unit;
   ChannelKind kind;
@@ -84,10 +112,10 @@ struct QuantityEntry {
 };
 
 inline constexpr QuantityEntry kQuantities[] = {
-#define BENTAXIS_ENTRY(identifier, symbol, repeat, components, unit, kind, group, frame, on, by, \
-                       point, equation, meaning)                                                 \
-  {symbol, Repeat::repeat, components, unit,   ChannelKind::kind, group, frame, on,              \
-   by,     point,          equation,   meaning},
+#define BENTAXIS_ENTRY(identifier, symbol, of, repeat, components, unit, kind, group, frame, on, \
+                       by, point, equation, meaning)                                             \
+  {symbol, transfers::of, Repeat::repeat, components, unit, ChannelKind::kind, group, frame, on, \
+   by,     point,         equation,       meaning},
     BENTAXIS_QUANTITIES(BENTAXIS_ENTRY)
 #undef BENTAXIS_ENTRY
 };
@@ -102,13 +130,20 @@ struct QuantityPlace {
   }
 };
 
-/// Place of entry `wanted` of kQuantities; of one beyond the last: the length of the row.
-constexpr QuantityPlace quantity_place(std::size_t wanted) {
+/// Place of entry `wanted` of kQuantities in a row of a pump with this transfer, which has it; of
+/// one beyond the last: the length of the row.
+constexpr QuantityPlace quantity_place(std::size_t wanted,
+                                       TransferKind transfer = TransferKind::gear) {
   constexpr std::size_t kCount = sizeof(kQuantities) / sizeof(kQuantities[0]);
   QuantityPlace place;
   for (std::size_t first = 0; first < kCount;) {
     // A block: an entry, or those that share the block of a piston.
     std::size_t end = first + 1;
+    if ((kQuantities[first].transfers & transfers::bit(transfer)) == 0) {
+      if (first == wanted) return place;  // not in this row
+      first = end;
+      continue;
+    }
     if (kQuantities[first].repeat == Repeat::interleaved)
       while (end < kCount && kQuantities[end].repeat == Repeat::interleaved) ++end;
     int length = 0;
@@ -144,7 +179,19 @@ constexpr std::size_t count_reactions() {
 }
 
 template <Quantity quantity>
-inline constexpr QuantityPlace kPlace = quantity_place(static_cast<std::size_t>(quantity));
+inline constexpr QuantityPlace kPlaces[kTransferKinds] = {
+    quantity_place(static_cast<std::size_t>(quantity), TransferKind::gear),
+    quantity_place(static_cast<std::size_t>(quantity), TransferKind::constant_velocity),
+    quantity_place(static_cast<std::size_t>(quantity), TransferKind::cardan),
+    quantity_place(static_cast<std::size_t>(quantity), TransferKind::pistons)};
+template <Quantity quantity>
+inline constexpr QuantityPlace kPlace = quantity_place(
+    static_cast<std::size_t>(quantity),
+    (kQuantities[static_cast<std::size_t>(quantity)].transfers & transfers::gear) != 0
+        ? TransferKind::gear
+    : (kQuantities[static_cast<std::size_t>(quantity)].transfers & transfers::cardan) != 0
+        ? TransferKind::cardan
+        : TransferKind::pistons);
 inline constexpr QuantityPlace kReactionsEnd = quantity_place(count_reactions());
 
 }  // namespace bentaxis

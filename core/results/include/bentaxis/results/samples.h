@@ -29,6 +29,11 @@ struct SampleRange {
   long long count = -1;  ///< -1: to the end
 };
 
+/// @throws InputError where a case cannot be run at constant speed: where the chambers' pressures
+///         are computed and differ from chamber to chamber (universal joint) or depend on the lag
+///         (pistons), and where the lag jumps with a step of the pressure
+void require_constant_speed(const Case& the_case);
+
 /// Samples of `revolutions` turns: angles 360 i/s for i = 0 .. s x revolutions - 1; against the
 /// direction of rotation (speed < 0) an integrated run takes `falling` angles -360 i/s.
 Samples sample_case(const Case& the_case, const PressureTrace& pressure, int revolutions = 1,

@@ -25,7 +25,7 @@ struct SimulationOptions {
   bool body_loads = false;  ///< Trajectory::loads too
 };
 
-/// A flank of the teeth that touches or leaves.
+/// A flank of the teeth that touches or leaves, or a piston and the wall of its bore.
 struct ToothEvent {
   double time_s = 0;
   bool touch = true;          ///< or leaves
@@ -34,7 +34,8 @@ struct ToothEvent {
   double block_speed = 0;     ///< rad/s, psi'
   double approach_speed = 0;  ///< m/s, of the two flanks along the line of action
   double impulse = 0;  ///< Ns, of the tooth force from this touch until the flanks leave, or the
-                       ///< end; 0 where they leave
+                       ///< end; 0 where they leave and of walls
+  int piston = 0;      ///< 1..N, of walls; `flank` then is the sign of theta - psi
 };
 
 /// What a simulation cost and how well it kept what must hold.

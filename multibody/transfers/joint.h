@@ -1,0 +1,62 @@
+// Joints by which the shaft turns the block: what they let the block do, and what they carry.
+#pragma once
+
+#include <SimTKsimbody.h>
+
+#include "bentaxis/pump/parameters.h"
+#include "bentaxis/results/instant.h"
+
+namespace bentaxis::multibody {
+
+/// A constant-velocity or universal joint between shaft and block, as one equation between the
+/// rotations of the two bodies. What it carries is the couple that Simbody finds with the equation.
+///
+/// - Constant velocity: the bodies are each other's mirror image in the plane that bisects their
+///   axes. Their axes across then keep xs.yb = ys.xb, whatever way the bodies lie. No direction of
+///   a couple is given: it is the gradient of this equation by the rotation of either body.
+/// - Universal: the cross holds the arm of the shaft's fork at a right angle to that of the block's
+///   fork. This is Simbody's own constraint of a constant angle. The cross has no mass, and no body
+///   stands for it: tests/simbody_conventions_test.cpp holds the equation to a universal mobilizer.
+class BlockJoint {
+ public:
+  /// @param pump  with a joint as its transfer
+  BlockJoint(const PumpParameters& pump, SimTK::MobilizedBody& shaft, SimTK::MobilizedBody& block);
+
+  void disable(SimTK::State& state) const { constraint_.disable(state); }
+  /// Couple that the joint exerts on the block, Nm in Ground; its opposite acts on the shaft.
+  /// @param state  realized to Acceleration
+  SimTK::Vec3 couple_on_block(const SimTK::State& state) const;
+  /// The same for a multiplier of 1: the direction that the equation gives it, and a length.
+  /// @param state  realized to Velocity
+  SimTK::Vec3 unit_couple_on_block(const SimTK::State& state) const;
+  SimTK::Vec3 unit_couple_on_shaft(const SimTK::State& state) const;
+
+ private:
+  SimTK::Vec3 unit_couple(const SimTK::State& state, const SimTK::MobilizedBody& body) const;
+
+  SimTK::MobilizedBody shaft_, block_;
+  SimTK::Constraint constraint_;
+};
+
+/// How a joint moves the block: shaft and block alone on pins, and Simbody's equation of the joint
+/// with its derivatives.
+class JointMotion {
+ public:
+  /// @param pump  with a joint as its transfer
+  explicit JointMotion(const PumpParameters& pump);
+  JointMotion(const JointMotion&) = delete;
+  JointMotion& operator=(const JointMotion&) = delete;
+
+  /// Motion of the block beside a motion of the shaft; its angle is within 90 deg of the shaft's.
+  AxisMotion block(const AxisMotion& shaft);
+
+ private:
+  double error_at(double shaft_angle, double block_angle);
+
+  SimTK::MultibodySystem system_;
+  SimTK::SimbodyMatterSubsystem matter_;
+  SimTK::MobilizedBody::Pin shaft_, block_;
+  SimTK::State state_;
+};
+
+}  // namespace bentaxis::multibody

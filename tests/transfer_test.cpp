@@ -1,0 +1,674 @@
+// Transfers from shaft to block beside the gear: what a case may say, stored curves, and properties
+// that no curve is needed for. docs/transfer.md.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+
+#include "bentaxis/analytic/batch.h"
+#include "bentaxis/analytic/body_loads.h"
+#include "bentaxis/analytic/budget.h"
+#include "bentaxis/analytic/constant_speed.h"
+#include "bentaxis/analytic/simulation.h"
+#include "bentaxis/files/case_writer.h"
+#include "bentaxis/files/csv.h"
+#include "bentaxis/pump/validate.h"
+#include "support.h"
+
+namespace bentaxis::test {
+namespace {
+
+using analytic::FrozenLag;
+using analytic::Model;
+using testing::HasSubstr;
+
+std::filesystem::path folder_of(const std::string& name) {
+  return std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" / "transfers" / name;
+}
+Case transfer_case(const std::string& name, const std::vector<std::string>& changes = {}) {
+  return read_case(folder_of(name) / "case.toml", changes);
+}
+const std::vector<std::string> kCurves = {"constant_velocity", "cardan", "pistons_seven"};
+
+ResultTable turn(const Case& the_case) {
+  return analytic::run(the_case, the_case.analytic, one_turn(the_case));
+}
+
+// Of double precision: a wall force is a stiffness times a small difference of lengths.
+double wall_rounding(const Case& the_case) {
+  const auto& wall = the_case.pump.transfer.wall;
+  return wall ? 4 * std::numeric_limits<double>::epsilon() *
+                    the_case.pump.geometry.joint_circle_radius * wall->stiffness
+              : 0;
+}
+
+// ---- What a case may say
+
+TEST(TransferCase, IsReadWrittenAndReadAgain) {
+  for (const std::string name : {"constant_velocity", "cardan", "pistons_seven"}) {
+    const Case first = transfer_case(name);
+    const Case again = parse_case(case_text(first), first.file);
+    EXPECT_EQ(case_text(first), case_text(again));
+    EXPECT_EQ(first.pump.transfer.kind, again.pump.transfer.kind);
+    EXPECT_EQ(first.pump.transfer.cardan.has_value(), name == "cardan");
+    EXPECT_EQ(first.pump.transfer.wall.has_value(), name == "pistons_seven");
+    validate(first);
+  }
+  EXPECT_EQ(transfer_case("cardan").pump.transfer.cardan->phase, radians(30.0));
+  EXPECT_EQ(transfer_case("pistons_seven").pump.transfer.wall->clearance, 1.55e-3);
+}
+
+TEST(TransferCase, RefusesWhatContradictsTheKind) {
+  const auto refused = [](const std::string& name, const std::vector<std::string>& changes) {
+    return refusal([&] { transfer_case(name, changes); });
+  };
+  EXPECT_THAT(refused("cardan", {"pump.type=bent_axis_bevel"}),
+              HasSubstr("[transfer] kind = \"cardan\": must be \"gear\" beside [pump] type"));
+  EXPECT_EQ(refused("cardan", {"pump.type=bent_axis"}), "accepted");
+  EXPECT_THAT(refused("cardan", {"transfer.kind=gear"}), HasSubstr("[gear]"));
+  EXPECT_EQ(refused("cardan", {"gear.pitch_diameter_mm=100", "gear.pressure_angle_deg=20"}),
+            "accepted");
+  EXPECT_THAT(refused("cardan", {"gear.pitch_diameter_mm=100", "gear.pressure_angle_deg=20",
+                                 "gear.contact=compliant", "gear.stiffness_N_per_um=100"}),
+              HasSubstr("must be \"rigid\" beside [transfer] kind = \"cardan\""));
+  EXPECT_THAT(refused("cardan", {"transfer.phase_deg=181"}), HasSubstr("[-180, 180]"));
+  EXPECT_THAT(refused("cardan", {"transfer.clearance_mm=-1"}), HasSubstr("clearance_mm"));
+  EXPECT_EQ(refused("cardan", {"transfer.clearance_mm=1"}), "accepted");
+  // Too short for the joint alone: a gear's block would take it.
+  const PumpParameters pump = transfer_case("cardan").pump;
+  const double locked = assembly_margin(pump.geometry).longest_distance;
+  const double behind_joint = assembly_margin(pump).longest_distance;
+  ASSERT_GT(behind_joint, locked);
+  const std::string length =
+      "pump.piston_length_mm=" + number_text((locked + behind_joint) / 2 * 1e3);
+  EXPECT_THAT(refused("cardan", {length}), HasSubstr("a piston cannot be assembled at theta"));
+  EXPECT_EQ(refused("cardan", {length, "transfer.kind=constant_velocity"}), "accepted");
+  EXPECT_THAT(refused("constant_velocity", {"transfer.kind=pistons"}),
+              HasSubstr("contact_from_joint_mm"));
+  EXPECT_THAT(refused("pistons_seven", {"transfer.contact_from_joint_mm=46"}),
+              HasSubstr("must be in [0, 46)"));
+  EXPECT_THAT(refused("pistons_seven", {"transfer.stiffness_exponent=3.5"}), HasSubstr("[1, 3]"));
+  EXPECT_THAT(refused("pistons_seven", {"friction.regularization_m_per_s=0"}),
+              HasSubstr("must be > 0 beside [transfer] kind = \"pistons\""));
+  EXPECT_THAT(refused("cardan", {"assumptions.analytic.gear=imposed"}),
+              HasSubstr("must be \"mesh\" beside [transfer] kind = \"cardan\""));
+}
+
+TEST(TransferCase, RefusesAtConstantSpeedWhatHasNoAnswer) {
+  const auto refused = [](const std::string& name, const std::vector<std::string>& changes) {
+    return refusal([&] { turn(transfer_case(name, changes)); });
+  };
+  EXPECT_THAT(refused("pistons_seven", {"pressure.transition_deg=0"}),
+              HasSubstr("[pressure] transition_deg = 0: must be > 0 beside [transfer] kind"));
+  EXPECT_EQ(refused("cardan", {"pressure.transition_deg=0"}), "accepted");
+  // w E = 1.3943 mm here.
+  EXPECT_THAT(refused("pistons_seven", {"transfer.clearance_mm=1.3"}),
+              HasSubstr("[transfer] clearance_mm = 1.3: the block has no free play at theta"));
+  EXPECT_THAT(refused("pistons_seven", {"transfer.clearance_mm=40"}), HasSubstr("clearance_mm"));
+}
+
+TEST(TransferColumns, FollowThePointOfTheFilm) {
+  const auto names = [](const std::string& name) {
+    std::vector<std::string> list;
+    for (const Channel& channel : ChannelLayout(transfer_case(name).pump).channels())
+      list.push_back(channel.name);
+    return list;
+  };
+  const auto after_film = [&](const std::string& name) {
+    const auto list = names(name);
+    const auto film = std::find(list.begin(), list.end(), "yh_y2_mm");
+    return std::vector<std::string>(film + 1, list.end());
+  };
+  const auto joint = after_film("constant_velocity");
+  EXPECT_EQ(std::vector<std::string>(joint.begin(), joint.begin() + 4),
+            (std::vector<std::string>{"Tcs_x2_Nm", "Tcs_y2_Nm", "Tcs_z2_Nm", "p_1_bar"}));
+  const auto cardan = after_film("cardan");
+  EXPECT_EQ(std::vector<std::string>(cardan.begin() + 3, cardan.begin() + 7),
+            (std::vector<std::string>{"psi_deg", "psi_rpm", "psi_rad_per_s2", "p_1_bar"}));
+  const auto pistons = after_film("pistons_seven");
+  EXPECT_EQ(pistons.front(), "Rw_1_x2_N");
+  EXPECT_EQ(pistons[13], "Rw_7_y2_N");
+  EXPECT_EQ(std::vector<std::string>(pistons.begin() + 14, pistons.begin() + 18),
+            (std::vector<std::string>{"psi_deg", "lag_deg", "Tb_z2_Nm", "p_1_bar"}));
+}
+
+// ---- Stored curves
+
+double over_peak(const Case& the_case, const ResultTable& table, const NumericTable& curve,
+                 std::string& where) {
+  // The largest difference over what is allowed: 1e-12 of peak and what rounding takes of a wall.
+  double worst = 0;
+  for (std::size_t c = 0; c < curve.header.size(); ++c) {
+    const std::size_t column = table.find(curve.header[c]);
+    if (column == table.columns()) continue;
+    const double allowed =
+        1e-12 * table.peak(table.channels[column].group) + wall_rounding(the_case);
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      const double share = std::abs(table.at(row, column) - curve.rows[row][c]) / allowed;
+      if (!(share <= worst)) {
+        worst = share;
+        where = curve.header[c] + " in row " + std::to_string(row);
+      }
+    }
+  }
+  return worst;
+}
+
+TEST(TransferCurves, AreMet) {
+  for (const std::string& name : kCurves) {
+    const Case the_case = transfer_case(name);
+    const ResultTable table = turn(the_case);
+    const NumericTable curve = read_numeric_csv(folder_of(name) / "reference.csv");
+    ASSERT_EQ(curve.rows.size(), table.rows());
+    std::size_t compared = 0;
+    for (const std::string& header : curve.header) compared += table.find(header) < table.columns();
+    EXPECT_EQ(compared + 1, curve.header.size()) << "all but theta_deg";
+    std::string where;
+    EXPECT_LE(over_peak(the_case, table, curve, where), scaled(1)) << name << ": " << where;
+    // Off by a millionth: it is noticed.
+    const ResultTable wrong = turn(
+        transfer_case(name, {name == "cardan"              ? "transfer.phase_deg=30.00003"
+                             : name == "constant_velocity" ? "pump.tilt_deg=40.00004"
+                                                           : "transfer.clearance_mm=1.550002"}));
+    EXPECT_GT(over_peak(the_case, wrong, curve, where), 100) << name;
+  }
+}
+
+// ---- Properties
+
+// Pumps that no curve is stored of: all kinds, even and odd N, real spinning pistons, b != 0,
+// Rd != Ra, contact off B, against the direction of the ports.
+std::vector<Case> various(const std::string& kind) {
+  const auto make = [&](std::vector<std::string> changes) {
+    changes.push_back("transfer.kind=" + kind);
+    return transfer_case("pistons_seven", changes);
+  };
+  const std::vector<std::string> real = {"piston.inertia=real", "piston.centre_of_mass_mm=19",
+                                         "piston.transverse_inertia_kg_mm2=24",
+                                         "piston.axial_inertia_kg_mm2=5", "piston.spin_rpm=900"};
+  auto real_reversed = real;
+  real_reversed.insert(real_reversed.end(), {"operation.speed_rpm=-1500", "pump.pistons=6"});
+  auto even = real;
+  even.insert(even.end(), {"pump.pistons=8", "pump.bore_diameter_mm=14", "pump.axis_offset_mm=-0.2",
+                           "transfer.stiffness_exponent=1.5"});
+  return {make({}), make(real_reversed), make(even),
+          make({"piston.contact_mm=44", "pump.axis_offset_mm=0", "pump.tilt_deg=25",
+                "pump.bore_circle_radius_mm=23.7", "transfer.clearance_mm=0.8"})};
+}
+const std::vector<std::string> kKinds = {"constant_velocity", "cardan", "pistons"};
+
+TEST(TransferProperties, PowerCloses) {
+  for (const std::string& kind : kKinds)
+    for (const Case& the_case : various(kind)) {
+      const ResultTable table = turn(the_case);
+      const std::size_t residual = table.find("power_residual_Nm");
+      for (std::size_t row = 0; row < table.rows(); ++row)
+        EXPECT_NEAR(table.at(row, residual), 0, scaled(1e-11) * table.peak("Td"))
+            << kind << " N = " << the_case.pump.geometry.pistons << " row " << row;
+    }
+}
+
+// Forces and moments of everything on a body, as the body loads list them.
+TEST(TransferProperties, FreeBodiesClose) {
+  for (const std::string& kind : kKinds)
+    for (const Case& the_case : various(kind)) {
+      const BodyLoadTable loads =
+          analytic::run_body_loads(the_case, the_case.analytic, one_turn(the_case));
+      for (const BodySum& sum : worst_sums(loads)) {
+        EXPECT_LE(sum.force_over_sum, scaled(1e-13)) << kind << " " << sum.body;
+        EXPECT_LE(sum.moment_over_sum, scaled(1e-13)) << kind << " " << sum.body;
+      }
+    }
+}
+
+TEST(TransferProperties, ConstantVelocityGivesTheGearsPistonsAndTorque) {
+  Case joint = transfer_case("constant_velocity");
+  Case gear = reference_case("bap63_rated");
+  const ResultTable a = turn(joint), b = turn(gear);
+  for (const char* group : {"Rs", "Rc", "Td"})
+    for (std::size_t c = 0; c < a.columns(); ++c) {
+      if (a.channels[c].group != group || a.channels[c].frame == "S3") continue;
+      const std::size_t other = b.find(a.channels[c].name);
+      for (std::size_t row = 0; row < a.rows(); ++row)
+        EXPECT_NEAR(a.at(row, c), b.at(row, other), scaled(1e-14) * a.peak(group));
+    }
+  // Side couples (T3).
+  const double half = joint.pump.geometry.tilt / 2;
+  for (std::size_t row = 0; row < a.rows(); ++row) {
+    const double z = a.at(row, a.find("Tcs_z2_Nm"));
+    EXPECT_NEAR(a.at(row, a.find("Tcs_y2_Nm")), -z * std::tan(half), 1e-12);
+    EXPECT_NEAR(z, b.at(row, b.find("Tcs_z2_Nm")), 1e-11);
+  }
+}
+
+TEST(TransferProperties, CardanBecomesConstantVelocityWithoutTilt) {
+  // The joints differ by alpha squared: most by the block's inertia, Nm.
+  double before = 0;
+  for (const double tilt : {4.0, 2.0, 1.0}) {
+    const auto at = [&](const char* kind) {
+      return turn(transfer_case(
+          "cardan", {std::string("transfer.kind=") + kind, "pump.tilt_deg=" + number_text(tilt)}));
+    };
+    const ResultTable a = at("cardan"), b = at("constant_velocity");
+    double worst = 0;
+    for (std::size_t row = 0; row < a.rows(); ++row)
+      worst =
+          std::max(worst, std::abs(a.at(row, a.find("Td_z1_Nm")) - b.at(row, b.find("Td_z1_Nm"))));
+    if (before > 0) {
+      EXPECT_NEAR(before / worst, 4, 0.8) << tilt;
+    }
+    before = worst;
+  }
+  EXPECT_LT(before, 0.1);
+}
+
+// The joint's arms by their definition, with differences for the rates.
+TEST(TransferProperties, CardanKeepsItsArmsAcross) {
+  const Case the_case = transfer_case("cardan");
+  const Model model(the_case.pump, the_case.analytic);
+  const double tilt = the_case.pump.geometry.tilt, phase = the_case.pump.transfer.cardan->phase;
+  const auto psi = [&](double theta) { return model.block_motion({theta, 1, 0}).angle; };
+  for (double theta = -7; theta < 7; theta += 0.37) {
+    const double t = theta - phase, p = psi(theta) - phase;
+    // (-sin p, cos p, 0) of S2 in S1.
+    EXPECT_NEAR(std::cos(t) * -std::sin(p) + std::sin(t) * std::cos(tilt) * std::cos(p), 0, 1e-15);
+    EXPECT_LT(std::abs(psi(theta) - theta), 0.04);
+    const double h = 1e-4;
+    const AxisMotion block = model.block_motion({theta, 3.0, -5.0});
+    EXPECT_NEAR(block.speed, 3 * (psi(theta + h) - psi(theta - h)) / (2 * h), 1e-7);
+    EXPECT_NEAR(block.acceleration,
+                9 * (psi(theta + h) - 2 * psi(theta) + psi(theta - h)) / (h * h) -
+                    5 * (psi(theta + h) - psi(theta - h)) / (2 * h),
+                1e-5);  // the quotient's own round-off: 9 eps |psi| / h^2 is 1.4e-6
+  }
+}
+
+// Without mass and friction the drive torque is that of virtual work along psi(theta).
+TEST(TransferProperties, DriveTorqueIsTheWorkOfThePressures) {
+  for (const std::string kind : {"constant_velocity", "cardan"}) {
+    const Case the_case = transfer_case(
+        "cardan", {"transfer.kind=" + kind, "piston.inertia=lumped", "piston.mass_kg=0",
+                   "block.mass_kg=0", "shaft.mass_kg=0", "friction.piston_coulomb_N=0",
+                   "friction.block_viscous_Nm_per_rpm=0", "friction.shaft_viscous_Nm_per_rpm=0",
+                   "friction.shaft_torque_factor=1", "block.axial_inertia_kg_mm2=1e-9"});
+    const ResultTable table = turn(the_case);
+    const Geometry& g = the_case.pump.geometry;
+    const double area = kPi / 4 * g.bore_diameter * g.bore_diameter;
+    const Model model(the_case.pump, the_case.analytic);
+    const auto z = [&](double theta, int k) {
+      const double phase = 2 * kPi * k / g.pistons;
+      const double psi = model.block_motion({theta, 0, 0}).angle;
+      const double off = joint_distance(g, theta - phase, psi - phase);
+      return g.joint_circle_radius * std::sin(g.tilt) * std::cos(theta - phase) +
+             std::sqrt(g.piston_length * g.piston_length - off * off);
+    };
+    for (std::size_t row = 0; row < table.rows(); row += 5) {
+      const double theta = radians(table.theta_deg[row]), h = 1e-5;
+      double torque = 0;
+      for (int k = 0; k < g.pistons; ++k)
+        torque += pascals(table.at(row, table.find("p_" + std::to_string(k + 1) + "_bar"))) * area *
+                  (z(theta + h, k) - z(theta - h, k)) / (2 * h);
+      EXPECT_NEAR(table.at(row, table.find("Td_z1_Nm")), torque, 1e-7) << kind << row;
+    }
+  }
+}
+
+TEST(TransferProperties, AtConstantSpeedOnlyTheCardansBlockInertiaCounts) {
+  for (const std::string& kind : kKinds) {
+    const auto with = [&](const char* shaft, const char* block) {
+      return turn(transfer_case(
+          "pistons_seven",
+          {"transfer.kind=" + kind, std::string("shaft.axial_inertia_kg_mm2=") + shaft,
+           std::string("block.axial_inertia_kg_mm2=") + block}));
+    };
+    const ResultTable base = with("2000", "1500");
+    EXPECT_EQ(worst_difference(base, with("9000", "1500")).over_peak, 0) << kind;
+    const double by_block = worst_difference(base, with("2000", "9000"), true).over_peak;
+    if (kind == "cardan")
+      EXPECT_GT(by_block, 1e-2);
+    else
+      EXPECT_EQ(by_block, 0) << kind;
+  }
+}
+
+// ---- Pistons at constant speed
+
+FrozenLag lag_at(const Case& the_case, double theta_deg) {
+  const Model model(the_case.pump, the_case.analytic);
+  return model.frozen_lag(
+      instant_at(the_case, theta_deg, rad_per_second(the_case.operation.speed_rpm)),
+      PressureTrace(the_case.pressure));
+}
+
+// Third opinion: positions alone. The smallest lag at which some piston's axis is clearance away
+// from its bore's, and which piston that is.
+struct Touch {
+  double lag = 0;
+  int piston = 0;
+};
+Touch first_touch(const Case& the_case, double theta) {
+  const Geometry& g = the_case.pump.geometry;
+  const WallContact& wall = *the_case.pump.transfer.wall;
+  const double share = 1 - wall.from_joint / g.piston_length;
+  const auto furthest = [&](double lag) {
+    Touch far{0, 0};
+    for (int k = 0; k < g.pistons; ++k) {
+      const double phase = 2 * kPi * k / g.pistons;
+      const double off = share * joint_distance(g, theta - phase, theta - lag - phase);
+      if (off > far.lag) far = {off, k};
+    }
+    return far;
+  };
+  double low = 0, high = 0.5;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (furthest(middle).lag < wall.clearance ? low : high) = middle;
+  }
+  return {low, furthest(low).piston};
+}
+
+const std::vector<std::string> kSymmetric = {
+    "pump.axis_offset_mm=0", "pump.bore_circle_radius_mm=22.00478"};  // Rd = Ra (1 + cos)/2
+
+TEST(FrozenLagOfPistons, HandsOverAsTheGeometrySays) {
+  for (const int pistons : {5, 7, 6}) {
+    auto changes = kSymmetric;
+    changes.push_back("pump.pistons=" + std::to_string(pistons));
+    changes.push_back("transfer.stiffness_N_per_um=1000000");
+    changes.push_back("transfer.dissipation_s_per_m=0");
+    const Case the_case = transfer_case("pistons_seven", changes);
+    const Geometry& g = the_case.pump.geometry;
+    const bool odd = pistons % 2 == 1;
+    int hand_overs = 0, first = -1, last = -1;
+    double least = 1, most = 0;
+    const int rows = 1440;
+    const Model model(the_case.pump, the_case.analytic);
+    const PressureTrace pressure(the_case.pressure);
+    std::vector<double> values(model.layout().size());
+    for (int i = 0; i < rows; ++i) {
+      const double theta_deg = 360.0 * (i + 0.5) / rows;
+      const Touch touch = first_touch(the_case, radians(theta_deg));
+      const int carrier = odd ? touch.piston : touch.piston % (pistons / 2);
+      if (last >= 0 && carrier != last) ++hand_overs;
+      if (first < 0) first = carrier;
+      last = carrier;
+      const double d = 2 * g.bore_circle_radius * std::sin(touch.lag / 2);
+      least = std::min(least, d);
+      most = std::max(most, d);
+      if (i % 36 != 0) continue;
+      Instant instant = instant_at(the_case, theta_deg, rad_per_second(1500));
+      model.place_at_constant_speed(instant, pressure);
+      EXPECT_NEAR(instant.lag->angle, touch.lag, 3e-7) << theta_deg;
+      model.evaluate(instant, values);
+      double largest = 0;
+      int carries = 0;
+      for (int k = 0; k < pistons; ++k) {
+        const double force =
+            std::hypot(values[model.layout().Rw(k, 0)], values[model.layout().Rw(k, 1)]);
+        if (force > largest) {
+          largest = force;
+          carries = k;
+        }
+      }
+      EXPECT_GT(largest, 100);
+      if (odd) {
+        EXPECT_EQ(carries, touch.piston) << theta_deg;
+      }
+    }
+    hand_overs += first != last;  // at the end of the turn
+    EXPECT_EQ(hand_overs, odd ? 2 * pistons : pistons);
+    // Extremes of |D| (docs/transfer.md).
+    const WallContact& wall = *the_case.pump.transfer.wall;
+    const double reach = wall.clearance / (1 - wall.from_joint / g.piston_length);
+    const double e = g.joint_circle_radius * (1 - std::cos(g.tilt)) / 2;
+    const double angle = radians((odd ? 180.0 : 360.0) / pistons);
+    EXPECT_NEAR(least, reach - e, 1e-6);
+    EXPECT_NEAR(most,
+                std::sqrt(reach * reach - std::pow(e * std::sin(angle), 2)) - e * std::cos(angle),
+                2e-6);
+  }
+}
+
+TEST(FrozenLagOfPistons, GoesToTheRigidLimitAsOneOverTheStiffness) {
+  double before = 0;
+  for (const char* stiffness : {"1000", "2000", "4000"}) {
+    const Case the_case =
+        transfer_case("pistons_seven", {std::string("transfer.stiffness_N_per_um=") + stiffness});
+    const FrozenLag lag = lag_at(the_case, 35);
+    EXPECT_EQ(lag.rule, FrozenLag::Rule::one_side);
+    const double beyond = lag.angle - lag.high;
+    EXPECT_GT(beyond, 0);
+    if (before > 0) {
+      EXPECT_NEAR(before / beyond, 2, 0.02);
+    }
+    before = beyond;
+  }
+}
+
+TEST(FrozenLagOfPistons, FollowsItsRules) {
+  // Nothing acts: the middle.
+  const Case unloaded =
+      transfer_case("pistons_seven",
+                    {"pressure.delivery_bar=0", "piston.mass_kg=0", "friction.piston_coulomb_N=0",
+                     "friction.block_viscous_Nm_per_rpm=0", "block.mass_kg=0"});
+  const FrozenLag middle = lag_at(unloaded, 20);
+  EXPECT_EQ(middle.rule, FrozenLag::Rule::no_load);
+  EXPECT_DOUBLE_EQ(middle.angle, (middle.low + middle.high) / 2);
+  // Drag on the block: the driving side, whichever way the shaft turns.
+  const Case forwards = transfer_case("pistons_seven");
+  const Case backwards = transfer_case("pistons_seven", {"operation.speed_rpm=-1500"});
+  EXPECT_GT(lag_at(forwards, 35).angle, lag_at(forwards, 35).high);
+  EXPECT_LT(lag_at(backwards, 35).angle, lag_at(backwards, 35).low);
+  // Struts under pressure push off the middle: roots on both sides without drag.
+  const Case struts = transfer_case(
+      "pistons_seven", {"friction.block_viscous_Nm_per_rpm=0", "friction.piston_coulomb_N=0"});
+  analytic::LagRules rules;
+  const Model model(struts.pump, struts.analytic);
+  const PressureTrace pressure(struts.pressure);
+  for (int i = 0; i < 72; ++i) {
+    Instant instant = instant_at(struts, 5.0 * i, rad_per_second(1500));
+    rules.count(model.frozen_lag(instant, pressure));
+  }
+  EXPECT_GT(rules.rows[static_cast<int>(FrozenLag::Rule::driving)], 0u);
+  EXPECT_EQ(rules.rows[0] + rules.rows[1] + rules.rows[2] + rules.rows[3], 72u);
+  EXPECT_THAT(rules.text(), HasSubstr("rows by rule"));
+  // Small loads: within the free play, where no wall pushes.
+  const Case light = transfer_case(
+      "pistons_seven", {"pressure.delivery_bar=0", "friction.block_viscous_Nm_per_rpm=0"});
+  int free = 0;
+  for (int i = 0; i < 72; ++i) {
+    const FrozenLag lag = lag_at(light, 5.0 * i);
+    free += lag.rule == FrozenLag::Rule::free;
+    if (lag.rule == FrozenLag::Rule::free) {
+      EXPECT_LE(lag.angle, lag.high);
+      EXPECT_GE(lag.angle, lag.low);
+    }
+  }
+  EXPECT_GT(free, 0);
+}
+
+TEST(FrozenLagOfPistons, FailsWhereAPistonLeavesItsBoreFirst) {
+  const Case soft = transfer_case("pistons_seven", {"transfer.stiffness_N_per_um=1e-6"});
+  EXPECT_THROW(turn(soft), ComputationError);
+}
+
+// ---- Given states
+
+TEST(TransferStates, JointsPrescribeTheBlock) {
+  const Scratch scratch;
+  for (const std::string name : {"constant_velocity", "cardan"}) {
+    const Case the_case = transfer_case(name);
+    const PressureTrace pressure(the_case.pressure);
+    const auto file = scratch.file(
+        "states.csv", "theta_deg,theta_rpm,theta_rad_per_s2\n50,1500,0\n410,1500,0\n77,900,250\n");
+    const States states = read_states(file, the_case, pressure);
+    const MotionTable table = analytic::run_states(the_case, the_case.analytic, states);
+    const ResultTable driven = turn(the_case);
+    const std::size_t td = driven.find("Td_z1_Nm");
+    EXPECT_NEAR(table.results.at(0, td), driven.at(10, td), 1e-11);
+    EXPECT_NEAR(table.results.at(1, td), driven.at(10, td), 1e-9);
+    const std::size_t balance = table.results.find("power_balance_W");
+    EXPECT_NEAR(table.results.at(2, balance), 0, 1e-9);
+    // Given as well: they must match.
+    const Model model(the_case.pump, the_case.analytic);
+    const AxisMotion block = model.block_motion({radians(77), rad_per_second(900), 250});
+    const auto row = [&](double more) {
+      return "theta_deg,psi_deg,theta_rpm,psi_rpm,theta_rad_per_s2,psi_rad_per_s2\n77," +
+             number_text(block.angle / kRadPerDegree + more) + ",900," +
+             number_text(block.speed / kRadPerSecondPerRpm) + ",250," +
+             number_text(block.acceleration) + "\n";
+    };
+    const auto read = [&](double more) {
+      return refusal(
+          [&] { read_states(scratch.file("given.csv", row(more)), the_case, pressure); });
+    };
+    EXPECT_EQ(read(0), "accepted");
+    EXPECT_EQ(read(5e-10), "accepted");
+    EXPECT_THAT(read(2e-9), HasSubstr("psi_deg"));
+  }
+}
+
+TEST(TransferStates, OfPistonsNeedATorqueOnTheBlock) {
+  const Scratch scratch;
+  const Case the_case = transfer_case("pistons_seven");
+  const PressureTrace pressure(the_case.pressure);
+  const auto row = [&](double psi_deg, double acceleration) {
+    const auto file =
+        scratch.file("states.csv",
+                     "theta_deg,psi_deg,theta_rpm,psi_rpm,theta_rad_per_s2,psi_rad_per_s2\n35," +
+                         number_text(psi_deg) + ",1500,1500,0," + number_text(acceleration) + "\n");
+    return analytic::run_states(the_case, the_case.analytic, read_states(file, the_case, pressure));
+  };
+  const ResultTable driven = turn(the_case);
+  const double psi = driven.at(7, driven.find("psi_deg"));
+  const MotionTable frozen = row(psi, 0), moved = row(psi, 1000), free = row(35, 0);
+  const std::size_t tb = frozen.results.find("Tb_z2_Nm");
+  EXPECT_NEAR(frozen.results.at(0, tb), 0, 1e-8);
+  EXPECT_FALSE(is_computed(driven.at(7, tb)));
+  // The block's inertia and that of the pistons that follow it.
+  EXPECT_GT(moved.results.at(0, tb), 1000 * the_case.pump.block.axial_inertia);
+  EXPECT_EQ(free.results.at(0, free.results.find("lag_deg")), 0);
+  for (int k = 1; k <= 7; ++k)
+    EXPECT_EQ(free.results.at(0, free.results.find("Rw_" + std::to_string(k) + "_x2_N")), 0);
+  for (const MotionTable* table : {&frozen, &moved, &free})
+    EXPECT_NEAR(table->results.at(0, table->results.find("power_balance_W")), 0, 1e-7);
+  EXPECT_THAT(to_csv(frozen), HasSubstr("Rw_7_y2_N,lag_deg,Tb_z2_Nm,")) << "psi_deg stands first";
+}
+
+// ---- Motion
+
+Trajectory simulated(const Case& the_case, const analytic::SimulationOptions& options = {}) {
+  return analytic::simulate(the_case, the_case.analytic, PressureTrace(the_case.pressure), options);
+}
+
+double column_difference(const MotionTable& table, const NumericTable& curve,
+                         const std::string& name) {
+  const auto place = std::find(curve.header.begin(), curve.header.end(), name);
+  const auto theirs = static_cast<std::size_t>(place - curve.header.begin());
+  const auto state = std::find(table.state_names.begin(), table.state_names.end(), name);
+  double worst = 0;
+  for (std::size_t row = 0; row < curve.rows.size(); ++row) {
+    const double ours =
+        state != table.state_names.end()
+            ? table.state(row, static_cast<std::size_t>(state - table.state_names.begin()))
+            : table.results.at(row, table.results.find(name));
+    worst = std::max(worst, std::abs(ours - curve.rows[row][theirs]));
+  }
+  return worst;
+}
+
+TEST(TransferMotion, OfPistonsFollowsTheStoredTrajectory) {
+  const Case the_case = transfer_case("pistons_seven_free");
+  const NumericTable curve = read_numeric_csv(folder_of("pistons_seven_free") / "reference.csv");
+  const Trajectory run = simulated(the_case);
+  ASSERT_EQ(run.table.results.rows(), curve.rows.size());
+  EXPECT_LE(column_difference(run.table, curve, "psi_deg") * kRadPerDegree, scaled(1e-9));
+  EXPECT_LE(column_difference(run.table, curve, "block_rpm"), scaled(2e-5));
+  std::size_t compared = 0;
+  for (const std::string& name : curve.header) {
+    const std::size_t column = run.table.results.find(name);
+    if (column == run.table.results.columns()) continue;
+    ++compared;
+    EXPECT_LE(column_difference(run.table, curve, name),
+              scaled(1e-7) * run.table.results.peak(run.table.results.channels[column].group))
+        << name;
+  }
+  EXPECT_EQ(compared + 4, curve.header.size()) << "all but time, theta and both speeds";
+  std::size_t touches = 0;
+  for (const ToothEvent& event : run.record.events) {
+    touches += event.touch;
+    EXPECT_GE(event.piston, 1);
+  }
+  EXPECT_EQ(touches, 21u);
+  EXPECT_LE(run.record.worst_work_residual, scaled(1e-8) * std::abs(run.record.work_of_loads));
+}
+
+TEST(TransferMotion, OfJointsHasTheShaftsStateAlone) {
+  const std::vector<std::string> torque = {"drive.kind=torque", "drive.torque_Nm=150",
+                                           "drive.duration_s=0.02", "drive.samples=20",
+                                           "friction.regularization_m_per_s=0.01"};
+  for (const std::string name : {"constant_velocity", "cardan"}) {
+    const Case the_case = transfer_case(name, torque);
+    const Model model(the_case.pump, the_case.analytic);
+    const Trajectory run = simulated(the_case);
+    for (std::size_t row = 0; row < run.table.results.rows(); ++row) {
+      const double theta = run.state(row, StateColumn::theta);
+      const AxisMotion block = model.block_motion(
+          {radians(theta), rad_per_second(run.state(row, StateColumn::shaft_speed)), 0});
+      EXPECT_NEAR(run.state(row, StateColumn::psi), block.angle / kRadPerDegree, 1e-9);
+      EXPECT_NEAR(run.state(row, StateColumn::block_speed), block.speed / kRadPerSecondPerRpm,
+                  1e-7);
+    }
+    EXPECT_LE(run.record.worst_work_residual, scaled(1e-7) * std::abs(run.record.work_of_loads))
+        << name;
+    EXPECT_TRUE(run.record.events.empty());
+  }
+}
+
+// ---- The kernel of many instants
+
+TEST(TransferBatch, IsTheModelAtOneInstant) {
+  for (const std::string name : {"constant_velocity", "cardan"}) {
+    const Case the_case = transfer_case(name);
+    const Model model(the_case.pump, the_case.analytic);
+    const analytic::BatchModel batch(the_case.pump, the_case.analytic);
+    constexpr std::size_t kCount = 37;
+    std::vector<double> theta(kCount);
+    for (std::size_t i = 0; i < kCount; ++i) theta[i] = 0.3 * static_cast<double>(i) - 4;
+    std::vector<analytic::Varying> pressures(5);
+    for (std::size_t k = 0; k < 5; ++k) pressures[k] = {nullptr, 1e5 * (10 + 50.0 * k)};
+    analytic::BatchInstants instants;
+    instants.count = kCount;
+    instants.theta = {theta.data(), 0};
+    instants.omega = {nullptr, 150};
+    instants.omega_dot = {nullptr, -40};
+    instants.chamber_pressure = pressures;
+    for (const auto set : analytic::available_instruction_sets()) {
+      analytic::BatchColumns columns(model.layout().reactions(), kCount);
+      batch.reactions(instants,
+                      analytic::outputs_of(model.layout(), analytic::ChannelGroup::all, columns),
+                      {set, 1});
+      std::vector<double> values(model.layout().size());
+      Instant instant;
+      for (std::size_t k = 0; k < 5; ++k) instant.chamber_pressure.push_back(pressures[k].all);
+      for (std::size_t i = 0; i < kCount; ++i) {
+        instant.turn(theta[i], 150, -40);
+        model.reactions(instant, values);
+        for (std::size_t c = 0; c < model.layout().reactions(); ++c) {
+          if (c == model.layout().Rcs()) continue;
+          EXPECT_NEAR(columns.column(c)[i], values[c], scaled(1e-12) * (1e4 + std::abs(values[c])))
+              << to_string(set) << " " << model.layout().channels()[c].name;
+        }
+      }
+    }
+  }
+  EXPECT_THAT(refusal([] {
+                const Case the_case = transfer_case("pistons_seven");
+                const analytic::BatchModel batch(the_case.pump, the_case.analytic);
+              }),
+              HasSubstr("[transfer] kind = \"pistons\""));
+}
+
+}  // namespace
+}  // namespace bentaxis::test
