@@ -24,8 +24,9 @@ Table pump_table() {
       .differentiable = always,
       .parameters =
           {choice("type", FIELD(c.pump.type), {"bent_axis", "bent_axis_bevel"}, "bent_axis",
-                  "kind of mechanism; bent_axis_bevel: a bevel gear carries the block round, which "
-                  "`[transfer]` says otherwise"),
+                  "kind of mechanism; bent_axis_bevel: a bevel gear drives the block, an error "
+                  "with another "
+                  "kind of `[transfer]`"),
            number("pistons", "N", FIELD(c.pump.geometry.pistons), kNoUnit, {1, kMaxPistons},
                   kRequired, "number of pistons",
                   {.also = {"z", "n", "number_of_pistons", "piston_count", "piston_number",

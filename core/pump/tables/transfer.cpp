@@ -1,4 +1,4 @@
-// [transfer]: what carries the block round.
+// [transfer]: what drives the block.
 #include "tables/entries.h"
 
 namespace bentaxis::tables {
@@ -36,7 +36,7 @@ std::string cardan_not_assembled(const Case& c) {
 Table transfer_table() {
   return {
       .name = "transfer",
-      .meaning = "what carries the block round",
+      .meaning = "what drives the block",
       .presence = Presence::optional,
       .differentiable = always,
       .parameters =
