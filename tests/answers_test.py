@@ -98,7 +98,7 @@ class AnswersTest(unittest.TestCase):
         torque = max((abs(float(row["Td_z1_Nm"])) for row in rows))
         self.assertAlmostEqual(float(re.search(r"at most ([\d.]+) Nm", answers[1])[1]), torque, delta=1e-3 * torque)
         # The film cannot push beyond the plate: that is said where the numbers are.
-        self.assertRegex(answers[-1], r"^Not a motion of a pump in [\d.]+ % of the rows: .* beyond the plate's 27 mm")
+        self.assertRegex(answers[-1], r"^Not a possible motion of a pump in [\d.]+ % of the rows: .* outside the plate radius of 27 mm")
 
     def test_pressure(self):
         answers = self.answers("pressure", self.case("bap63_rated_hydraulic"), "--set", "operation.samples_per_revolution=60",

@@ -53,7 +53,7 @@ class IdentifyTest(ProgramTest):
 
     def test_files_and_tables(self):
         result = self.identify(DATA)
-        self.assertIn("1 of 1 predicted data are not met by their 95 % bands", result.out)
+        self.assertIn("1 of 1 predicted data are outside their 95 % bands", result.out)
         self.assertEqual({path.name for path in (self.folder / "out").iterdir()},
                          {"report.html", "report.json", "identified.toml", "unknowns.csv", "bands.csv"})
         report = json.loads((self.folder / "out" / "report.json").read_text())
@@ -99,7 +99,7 @@ class IdentifyTest(ProgramTest):
         with open(self.folder / "out" / "bands.csv", newline="") as file:
             bands = list(csv.DictReader(file))
         widths = {}
-        for known in tables["How well each reaction is known"]:
+        for known in tables["Uncertainty of each reaction"]:
             name = known["reaction"]
             low, middle, high = ([float(b[f"{name}_{q}"]) for b in bands] for q in ("q025", "q500", "q975"))
             peak = max(abs(v) for v in middle)
@@ -109,7 +109,7 @@ class IdentifyTest(ProgramTest):
         least, most = min(widths, key=widths.get), max(widths, key=widths.get)
         self.assertIn(f"{widths[least]:.2g} % ({least}) .. {widths[most]:.2g} % ({most}) of peak", result.out)
         self.assertRegex(result.out, rf"pump\.bore_diameter_mm +{float(row['identified']):.6g} mm")
-        best = tables["Which measurement would help most"]
+        best = tables["Most useful further measurements"]
         gains = [m["all bands narrower by, %"] for m in best]
         self.assertEqual(gains, sorted(gains, reverse=True))
         self.assertIn(f"The most useful further measurement is {best[0]['measurement']}: ", result.out)
@@ -181,7 +181,7 @@ between = [38, 42]
         self.assertEqual((best["parameter"], best["refuted"]), ("friction.piston_coulomb_N", False))
         self.assertAlmostEqual(best["fitted"], 120, delta=5)
         self.assertGreater(abs(tables["Largest residuals"][0]["residual, sigma"]), 3)
-        self.assertNotIn("How well each reaction is known", tables)
+        self.assertNotIn("Uncertainty of each reaction", tables)
         with open(self.folder / "out" / "unknowns.csv", newline="") as file:
             rows = list(csv.DictReader(file))
         for row in rows:

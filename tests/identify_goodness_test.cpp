@@ -241,7 +241,8 @@ TEST_F(Goodness, NoiseStatedTooLargeIsSaid) {
   EXPECT_FALSE(found.goodness.refuted());
   EXPECT_EQ(identify_document(model, found, {}, {}).warnings.value().at(0).name,
             "Stated uncertainties too large");
-  EXPECT_THAT(identify_text(model, found), HasSubstr("smaller than the stated uncertainties"));
+  EXPECT_THAT(identify_text(model, found),
+              HasSubstr("smaller than expected from the stated uncertainties"));
 }
 
 // Where the noise is three times what is stated and nothing else is wrong, widened deviations are

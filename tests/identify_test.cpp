@@ -281,7 +281,7 @@ TEST_F(Identify, ThePosteriorIsThatOfALineAndDoesNotDependOnThreads) {
 
   // Walkers that have not settled are said.
   EXPECT_FALSE(identify_document(model, one, {}, {}).warnings);
-  EXPECT_THAT(identify_text(model, one), testing::Not(HasSubstr("not settled")));
+  EXPECT_THAT(identify_text(model, one), testing::Not(HasSubstr("not converged")));
   Identification unsettled = one;
   unsettled.posterior.rhat.back() = 1.2;
   EXPECT_EQ(identify_document(model, unsettled, {}, {}).warnings.value().at(0).name,
@@ -417,13 +417,13 @@ TEST_F(Identify, WhatCannotBeIsRefused) {
     return refusal_of([&] { DataModel(base, data); });
   };
   EXPECT_THAT(refusal(data_of(base, {}, {torque})), HasSubstr("nothing is unknown"));
-  EXPECT_THAT(refusal(data_of(base, {"pump.tilt_deg=30:50"}, {})), HasSubstr("nothing that"));
+  EXPECT_THAT(refusal(data_of(base, {"pump.tilt_deg=30:50"}, {})), HasSubstr("nothing to which"));
   EXPECT_THAT(refusal(data_of(base, {"pump.tilt_deg=30:50", "pump.tilt_deg=30:50"}, {torque})),
               HasSubstr("unknown twice"));
   EXPECT_THAT(refusal_of([&] { unknown_of("--vary", "pump.tilt_deg=50:30", base); }),
               HasSubstr("below"));
   EXPECT_THAT(refusal_of([&] { unknown_of("--vary", "pump.pistons=3:9", base); }),
-              HasSubstr("no values in between"));
+              HasSubstr("is not continuous"));
 }
 
 }  // namespace

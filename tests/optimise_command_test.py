@@ -87,7 +87,7 @@ class Optimise(unittest.TestCase):
     def test_no_design_is_a_clear_no(self):
         done = self.run_program(*FRONT, "--subject-to", "displacement_cm3 >= 900", status=NONE_FOUND)
         self.assertTrue(done.stdout.startswith("none of "), done.stdout)
-        self.assertIn("The nearest miss is design", done.stdout)
+        self.assertIn("The design closest to feasible is design", done.stdout)
         verdict = json.loads((self.out / "report.json").read_text())["verdict"]
         self.assertEqual((verdict["agrees"], verdict["word"]), (False, "No design"))
         self.assertFalse(list(self.out.glob("chosen_*")))

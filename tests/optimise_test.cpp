@@ -278,7 +278,8 @@ TEST(OptimiseTest, RefusesWhatCannotBeMeant) {
   EXPECT_THAT(plan([](auto& r) { r.subject_to = {"peak:Rb1 < 3"}; }), HasSubstr("peak:Rb1 < 3"));
   EXPECT_THAT(plan([](auto& r) { r.subject_to = {"peak:Rb1 <= much"}; }), HasSubstr("much"));
   EXPECT_THAT(plan([](auto& r) { r.subject_to = {"peak:Rb1 <= inf"}; }), HasSubstr("inf"));
-  EXPECT_THAT(plan([](auto& r) { r.minimise = {"peak:Rb1@1"}; }), HasSubstr("there are none"));
+  EXPECT_THAT(plan([](auto& r) { r.minimise = {"peak:Rb1@1"}; }),
+              HasSubstr("--conditions, which is not given"));
   EXPECT_THAT(plan([](auto& r) { r.subject_to = {"peak:Rbx <= 1"}; }), HasSubstr("Rbx"));
   EXPECT_THAT(plan([](auto& r) {
                 r.vary = {{"pump.tilt_deg", "normal(40,1)"}};

@@ -167,7 +167,7 @@ class Sensitivity(unittest.TestCase):
         self.assertLessEqual({"pump.tilt_deg", "port_plate.inner_land_mm.2", "operation.speed_rpm"}, parameters)
 
     def test_what_is_no_number_is_refused(self):
-        for options, words in ((("--vary", "pump.pistons"), "pump.pistons: is no continuous number"),
+        for options, words in ((("--vary", "pump.pistons"), "pump.pistons: is not a continuous number"),
                                (("--vary", "pump.tilt"), "pump.tilt_deg"),
                                (("--output", "most:Td"), "most:Td: no statistic")):
             done = self.run_program(*options, status=BAD_INPUT)

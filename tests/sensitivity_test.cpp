@@ -149,7 +149,7 @@ TEST(Sensitivity, AgreesWithDifferencesOfSimbody) {
     EXPECT_FALSE(compare_derivatives(found, other).agrees());
     EXPECT_FALSE(compare_derivatives(other, compared.other).agrees());
     EXPECT_EQ(compare_derivatives(found, other).lacking, 1U);
-    other.derivatives[1][0].reason = "stands on a bound of its range";
+    other.derivatives[1][0].reason = "is at a bound of its range";
     EXPECT_TRUE(compare_derivatives(found, other).agrees());
     EXPECT_EQ(compare_derivatives(found, other).missing, 1U);
     for (auto& row : other.derivatives)
@@ -245,8 +245,8 @@ TEST(Sensitivity, SaysWhatItCannotDo) {
     }
     return "";
   };
-  EXPECT_THAT(refusal("pump.pistons"), testing::HasSubstr("no continuous number"));
-  EXPECT_THAT(refusal("assumptions.analytic.gear"), testing::HasSubstr("no continuous number"));
+  EXPECT_THAT(refusal("pump.pistons"), testing::HasSubstr("not a continuous number"));
+  EXPECT_THAT(refusal("assumptions.analytic.gear"), testing::HasSubstr("not a continuous number"));
   // On the bound of its range there are no two sides.
   Case bound = base;
   bound.pump.friction.shaft_torque_factor = 1;

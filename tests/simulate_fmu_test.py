@@ -111,7 +111,7 @@ class SimulateFmuTest(FmuTest):
     def test_refusals(self):
         rotor = self.unit("rotor")
         for option, value in (("--connect", "a=b"), ("--communication-step", "1e-3"), ("--fmu-set", "a=1"), ("--fmu-timeout", "3")):
-            self.says(option, value, contains=[option, "there is no --fmu"])
+            self.says(option, value, contains=[option, "has no effect without --fmu"])
         self.says("--fmu", "none.fmu", contains="none.fmu: does not exist")
         self.says("--fmu", self.case(), contains="not a zip archive")
         self.says("--fmu", self.unit("old_valve"), "--connect", "drive_speed=load_share", contains="units do not fit")

@@ -46,7 +46,7 @@ class TradeoffTest(ProgramTest):
                     self.assertGreaterEqual(row["error_worst"], row["error_Rs"])
                     self.assertGreater(row["position_drift_m"], 0)
         self.assertIn("For 1e-4 use ", result.out)
-        self.assertIn("none of the integrated runs is good enough", result.out)
+        self.assertIn("no integrated run is accurate enough", result.out)
 
         # What a turn needs, not what it takes.
         (row,) = self.rows(pressure="smooth", variant="rk-merson", accuracy=1e-6)

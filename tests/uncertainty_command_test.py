@@ -143,7 +143,7 @@ class UncertaintyTest(ProgramTest):
                                   "--vary", "pump.tilt_deg=normal(0.1)", "--samples", 300, "--no-curves", "--out", "out")
         rows = len(self.table("samples.csv"))
         self.assertLess(rows, 300)
-        self.assertIn(f"{300 - rows} of 300 samples are no pump", result.out)
+        self.assertIn(f"{300 - rows} of 300 samples are infeasible pumps", result.out)
         section = {s["title"]: s for s in self.report()["runs"]}["Samples that are no pump"]
         self.assertIn("port_plate", section["table"]["rows"][0][0])
         # What it does to the statistics: the arc's end is cut at its beginning, 189 deg, the tilt is not.
@@ -166,7 +166,7 @@ class UncertaintyTest(ProgramTest):
     def test_samples_that_a_comparison_leaves_out(self):
         case = self.uncertain('\n[uncertainty]\n"port_plate.delivery_arc_deg.2" = "normal(189.5, 0.5)"\n')
         result = self.run_program("compare", case, "--uncertainty", 200, "--out", "out")
-        self.assert_mentions(result.out, "of 200 samples are no pump", "u_input is that of the other samples alone")
+        self.assert_mentions(result.out, "of 200 samples are infeasible pumps", "u_input is that of the other samples alone")
         self.assertIn("Samples left out", [warning["name"] for warning in self.report()["warnings"]])
 
     def test_sobol_indices(self):

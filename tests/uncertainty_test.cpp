@@ -525,7 +525,7 @@ TEST(Uncertainty, RefusesWhatMostlyIsNoPump) {
     uncertainty(the_case, options);
     FAIL() << "accepted";
   } catch (const ComputationError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("of 200 samples are no pump"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("of 200 samples are infeasible pumps"));
   }
 }
 

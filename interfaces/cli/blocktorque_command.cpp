@@ -30,7 +30,7 @@ Command add_blocktorque_command(CommandParser program) {
   auto options = std::make_shared<Options>();
   CommandParser command = program.subcommand(
       "blocktorque",
-      "What explains the paper's torque from shaft to block against ADAMS: one change at a time");
+      "Explain the paper's torque from shaft to block against ADAMS: one change at a time");
   add_case(command, options->the_case);
   command
       .option("hydraulic", options->hydraulic,

@@ -93,7 +93,7 @@ int compare(const Options& options) {
 Command add_compare_command(CommandParser program) {
   auto options = std::make_shared<Options>();
   CommandParser command =
-      program.subcommand("compare", "Run both models and report where and by how much they differ");
+      program.subcommand("compare", "Run both models and report their differences");
   add_case(command, options->the_case);
   add_report(command, options->place, "report.html, report.json and the curves");
   command
@@ -114,14 +114,14 @@ Command add_compare_command(CommandParser program) {
       .text("KEY=VALUE ..");
   command
       .option("--multibody-case", options->multibody_case,
-              "give the multibody model another case, changed by --set alike: what would a "
-              "wrong input do?")
+              "give the multibody model another case, changed by --set alike: shows the effect of "
+              "a wrong input")
       .case_file()
       .text("CASE");
   command
       .option("--with", options->with,
-              "a reference folder: its curves beside both models', held to its tolerance; exit "
-              "status 1 where one differs")
+              "reference directory whose curves are compared with both models; exit status 1 where "
+              "one differs by more than its tolerance")
       .text("FOLDER");
   command
       .option("--uncertainty", options->uncertainty,

@@ -22,7 +22,7 @@ struct Options {
 Command add_completion_command(CommandParser program) {
   auto options = std::make_shared<Options>();
   CommandParser command = program.subcommand(
-      "completion", "Print what makes a shell complete commands, options and their values");
+      "completion", "Print the script for completion of commands, options and values in a shell");
   std::vector<std::string> shells = completed_shells();
   shells.emplace_back(kWords);
   command

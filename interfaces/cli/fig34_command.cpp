@@ -58,7 +58,7 @@ int run(Options& options) {
 Command add_fig34_command(CommandParser program) {
   auto options = std::make_shared<Options>();
   CommandParser command = program.subcommand(
-      "fig34", "Which tooth contacts could have made the paper's Fig. 34, and which not");
+      "fig34", "Contact laws of teeth that are consistent with the paper's Fig. 34");
   add_case(command, options->the_case, "bap63_rated");
   add_report(command, options->place, "fig34.html, fig34.json and the tables");
   command.option("--exponents", options->study.exponents, "exponents of the contact law")

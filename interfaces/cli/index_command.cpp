@@ -102,7 +102,7 @@ Command add_index_command(CommandParser program) {
   auto options = std::make_shared<Options>();
   CommandParser command =
       program.subcommand("index", "One page over all reports below a folder, the worst first");
-  command.option("DIR", options->folder, "folder with folders of reports").required();
+  command.option("DIR", options->folder, "directory with reports in its subdirectories").required();
   command
       .option("--out", options->out,
               "where results are written; directory for index.html and index.json")

@@ -59,12 +59,12 @@ int run(const Options& options) {
 Command add_inertia_command(CommandParser program) {
   auto options = std::make_shared<Options>();
   CommandParser command = program.subcommand(
-      "inertia", "What treating the pistons as two point masses does to the reactions");
+      "inertia", "Error of the reactions from treating the pistons as two point masses");
   add_case(command, options->the_case);
   add_report(command, options->place, "inertia.html, inertia.json and the curves");
   add_values(command, "--speeds", options->speeds, "shaft speeds, rpm", "1500,2350");
   command.choice("--map", options->study.map_axis, {"mass", "length"},
-                 "what grows along the map beside the speed: the piston's mass or its length");
+                 "what increases along the map besides the speed: the piston's mass or its length");
   command.option("--map-speeds", options->map_speeds, "range of speed of the map, rpm")
       .list()
       .text("FROM,TO [slowest / 3, 3 x fastest]");

@@ -41,7 +41,7 @@ int guarded(const std::function<int()>& job) {
     say("interrupted; nothing was written");
     return kInterrupted;
   } catch (const std::bad_alloc&) {
-    say("not enough memory; fewer samples or revolutions take less");
+    say("not enough memory; use fewer samples or revolutions");
     return kComputationFailed;
   } catch (const std::exception& error) {
     say(without_control_characters(error.what(), false).c_str());
@@ -65,14 +65,14 @@ void refuse_control_characters(int argc, char** argv) {
   for (int i = 1; i < argc; ++i)
     if (has_control_characters(argv[i], false))
       throw InputError("argument " + std::to_string(i) + ", \"" + argv[i] +
-                       "\": holds a control character");
+                       "\": contains a control character");
 }
 
 ProgramParser::Texts texts() {
   return {"bentaxis",
           "bentaxis: reaction forces and drive torque of bent-axis piston pumps by two independent "
           "models\n(analytic: closed form after Roccatello & Nervegna 2009; multibody: Simbody), "
-          "and how far they are apart.",
+          "and their differences.",
           "bentaxis " BENTAXIS_VERSION "\noptional parts: " + optional_parts(),
           "Exit status: 0 agreed or done, 1 out of tolerance, 2 bad usage or input, 3 computation "
           "failed.\nExample: bentaxis compare bap63_rated --out out\nAll cases by name: bentaxis "

@@ -30,7 +30,8 @@ int merge(const Options& options) {
   std::transform(sources.begin(), sources.end(), sources.begin(), blocks_in);
   const fs::path own = parts_in(options.place.out);
   if (fs::is_directory(own)) sources.insert(sources.begin(), own);
-  if (sources.empty()) throw InputError(own.string() + ": no such folder; name one with blocks");
+  if (sources.empty())
+    throw InputError(own.string() + ": no such directory; give one with blocks of a sweep");
   const auto [sweep, record] = designs::sweep_in(sources.front());
   designs::SweepParts parts(sources.front(), record);
   for (auto more = sources.begin() + 1; more != sources.end(); ++more) parts.add(*more);

@@ -35,7 +35,7 @@ Case CaseOption::read() const {
     std::fprintf(stderr, "bentaxis: %s: %s: %s\n", kind, doubt.code.c_str(), doubt.text.c_str());
   if (strict && !looked.warnings.empty())
     throw InputError(file +
-                     ": doubtful values, and --strict; what is meant needs a reason in "
+                     ": implausible values, and --strict; an intended value needs a reason in "
                      "[plausibility] (docs/plausibility.md)");
   return the_case;
 }
@@ -49,7 +49,7 @@ void CaseOption::refuse(const std::vector<report::Warning>& doubts, const std::s
 
 void CaseOption::refuse_timing(const std::vector<report::Warning>& timing) const {
   refuse(timing, file +
-                     ": timing of the ports beyond its limits, and --strict; what is meant needs a "
+                     ": port timing exceeds its limits, and --strict; intended timing needs a "
                      "reason in [plausibility] (docs/hydraulics.md)");
 }
 
@@ -71,8 +71,7 @@ void add_changes(CommandParser command, CaseOption& the_case) {
       .repeatable()
       .completed_with(changeable_keys())
       .text("TABLE.KEY=VALUE");
-  command.flag("--strict", the_case.strict,
-               "values that are possible but hardly meant are errors: exit status 2");
+  command.flag("--strict", the_case.strict, "plausibility warnings are errors: exit status 2");
 }
 
 void add_out(CommandParser command, std::string& folder, const std::string& what) {
@@ -162,12 +161,12 @@ void RunChoice::refuse_without_effect(bool multibody, bool states) const {
   if (states && way == study::Way::integrated)
     throw InputError("--way integrated: --states gives the motion, so nothing is integrated");
   if (states && given("--scene"))
-    throw InputError("--scene: changes nothing: at given --states the whole pump is built");
+    throw InputError("--scene: has no effect: at given --states the whole pump is built");
   const bool integrated = multibody && way == study::Way::integrated;
   if (given("--error") && !integrated)
     throw InputError(
-        "--error: only an integrated run of the multibody model has an error to choose; give "
-        "--way integrated (driven and analytic runs are exact to round-off)");
+        "--error: only an integrated run of the multibody model has a selectable error; give --way "
+        "integrated (driven and analytic runs are exact to round-off)");
   if (!multibody && way == study::Way::integrated)
     throw InputError(
         "--way integrated: only the multibody model is integrated in time; the analytic model "
@@ -177,16 +176,16 @@ void RunChoice::refuse_without_effect(bool multibody, bool states) const {
     if (!given(option)) continue;
     if (!multibody)
       throw InputError(std::string(option) +
-                       ": changes nothing: only the multibody model builds scenes");
+                       ": has no effect: only the multibody model builds scenes");
     if (integrated)
       throw InputError(
-          "--scene and --reactions are for --way driven: an integrated run is of the full pump, by "
-          "its equations of motion");
+          "--scene and --reactions are for --way driven: an integrated run always uses the full "
+          "pump and its equations of motion");
   }
   for (const char* option : {"--integrator", "--accuracy"})
     if (given(option) && !integrated)
       throw InputError(std::string(option) +
-                       ": changes nothing: only an integrated run of the multibody model takes "
+                       ": has no effect: only an integrated run of the multibody model takes "
                        "steps; give --way integrated");
 }
 

@@ -166,13 +166,12 @@ Command add_pressure_command(CommandParser program) {
   command
       .option("--suction-speed", options->suction_speed,
               "also the largest speed at which the chambers fill (at most 1 % of a stroke lost), "
-              "and the one at which no chamber falls below the pressure at which air comes out or "
-              "oil boils, or below one in bar: 10 to 30 operating points each")
+              "and the one at which no chamber falls below the pressure at which dissolved air is "
+              "released or oil boils, or below one in bar: 10 to 30 operating points each")
       .text("filling|saturation|vapour|BAR");
-  command.flag(
-      "--advise", options->advise,
-      "also which key to change, and by how much, for each timing verdict beyond its limit: "
-      "some 70 operating points");
+  command.flag("--advise", options->advise,
+               "also which key to change, and by how much, for each port timing quantity that "
+               "exceeds its limit: some 70 operating points");
   command.flag("--derived-displacement", options->derived_displacement,
                "also the displacement as test rigs derive it from flows (ISO 8426, Toet, Wilson, "
                "zero-pressure line) against the geometric one: a test of 30 operating points");

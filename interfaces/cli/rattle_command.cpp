@@ -99,7 +99,7 @@ int rattle(const Options& options) {
 Command add_rattle_command(CommandParser program) {
   auto options = std::make_shared<Options>();
   CommandParser command = program.subcommand(
-      "rattle", "Map where the gear carries, reverses, loses contact or hits both flanks");
+      "rattle", "Map of gear contact: loaded, reversing, out of contact, impacts on both flanks");
   add_case(command, options->the_case);
   add_report(command, options->place, "report.html, report.json and rattle.csv");
   add_values(command, "--speeds", options->speeds, "shaft speeds, rpm").required();

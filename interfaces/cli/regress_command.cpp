@@ -105,15 +105,15 @@ int regress(const Options& options) {
 Command add_regress_command(CommandParser program) {
   auto options = std::make_shared<Options>();
   CommandParser command = program.subcommand(
-      "regress", "Hold both models to stored curves: the shipped reference data or your own");
-  command.option("dir", options->folder, "folder with references (default: the shipped set)")
+      "regress", "Compare both models with stored curves: the shipped reference data or your own");
+  command.option("dir", options->folder, "directory with references (default: the shipped set)")
       .text("[DIR]");
   options->place.out.clear();  // nothing is written where it is not given
   add_report(command, options->place, "report.html, report.json and junit.xml");
   command.option("--junit", options->junit, "write the results as JUnit XML").text("FILE");
   command
       .option("--html", options->html,
-              "write a page with the curves that fail and every external curve, over both models")
+              "write a page with the curves that differ and every external curve, over both models")
       .text("FILE");
   command
       .option("--json-file", options->json,

@@ -49,7 +49,7 @@ int run_states(const Options& options, const study::PreparedCase& ready,
   channels.of(there);  // refuses unknown names
   const States states = read_states(options.states, ready.the_case, ready.pressure);
   const auto doubts = study::state_doubts(ready.the_case, states);
-  options.the_case.refuse(doubts, options.states + ": doubtful states, and --strict");
+  options.the_case.refuse(doubts, options.states + ": implausible states, and --strict");
   for (const auto& doubt : doubts) warn({doubt.name + ": " + doubt.text});
   ResultTable teeth;
   MotionTable table = study::run_states(ready, states, run_options, progress_of,

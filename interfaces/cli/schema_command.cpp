@@ -12,12 +12,12 @@ namespace bentaxis::cli {
 
 Command add_schema_command(CommandParser program) {
   CommandParser command = program.subcommand(
-      "schema", "print the JSON Schema of case files, for editors that complete and check TOML");
+      "schema", "Print the JSON Schema of case files, for editors that complete and check TOML");
   const auto tables = std::make_shared<std::vector<std::string>>();
   command
       .option("--markdown", *tables,
-              "print the keys of these tables as Markdown tables instead (docs/case_file.md); "
-              "top stands for the keys above all tables, checks for the checks of plausibility")
+              "print the keys of these tables as Markdown tables instead (docs/case_file.md); top "
+              "means the keys above all tables, checks the plausibility checks")
       .text("TABLE..");
   return {command, [tables] {
             std::string text;

@@ -76,10 +76,10 @@ int show(const Options& options) {
 
 Command add_show_command(CommandParser program) {
   auto options = std::make_shared<Options>();
-  CommandParser command = program.subcommand(
-      "show",
-      "Say what pump a case describes and what of it is doubtful, and draw it to scale; with its "
-      "forces by the analytic model alone");
+  CommandParser command =
+      program.subcommand("show",
+                         "Describe the pump of a case with its plausibility warnings and draw it "
+                         "to scale; with forces by the analytic model only");
   add_case(command, options->the_case);
   command
       .option("--out", options->out,

@@ -31,8 +31,7 @@ int simulate(const Options& options, const CommandParser& command) {
   for (const char* option : {"--integrator", "--accuracy"})
     if (command.given(option) && choice.only == study::Model::analytic)
       throw InputError(std::string(option) +
-                       ": changes nothing: only the multibody model is "
-                       "integrated by Simbody");
+                       ": has no effect: only the multibody model is integrated by Simbody");
   if (options.oil == "periodic") choice.oil = study::OilInTime::periodic;
   Case read = options.the_case.read();
   drive_of(read);
@@ -42,9 +41,8 @@ int simulate(const Options& options, const CommandParser& command) {
   for (const char* option : {"--integrator", "--accuracy"})
     if (command.given(option) && (one_method || choice.steady))
       throw InputError(std::string(option) +
-                       ": changes nothing: with oil, with a unit, of teeth and for a periodic "
-                       "motion, one method "
-                       "integrates what both models find; --error sets its tolerance");
+                       ": has no effect: with oil, an FMU, resolved tooth contact or a periodic "
+                       "motion, one method integrates both models; --error sets its tolerance");
   choice.unit = options.unit.coupling(
       command, read,
       read.pressure.kind == PressureKind::hydraulic && choice.oil == study::OilInTime::follows);
@@ -66,7 +64,8 @@ int simulate(const Options& options, const CommandParser& command) {
 Command add_simulate_command(CommandParser program) {
   auto options = std::make_shared<Options>();
   CommandParser command = program.subcommand(
-      "simulate", "Integrate the motion of shaft and block in time by both models and compare");
+      "simulate",
+      "Integrate the motion of shaft and block in time by both models and compare them");
   add_case(command, options->the_case);
   add_report(command, options->place, "report.html, report.json and the curves");
   command
@@ -80,8 +79,8 @@ Command add_simulate_command(CommandParser program) {
       .one_of({"coupled", "periodic"})
       .text("coupled|periodic [coupled]");
   command.flag("--steady", options->choice.steady,
-               "find the motion that repeats itself every N-th of a turn, and its stability, "
-               "instead of what follows the start; rows over one turn");
+               "find the periodic motion (period: an N-th of a turn) and its stability, instead of "
+               "the motion from the start; rows over one turn");
   options->unit.add_to(command);
   Option accuracy =
       command.option("--accuracy", options->choice.accuracy,

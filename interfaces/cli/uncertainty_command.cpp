@@ -44,7 +44,7 @@ int uncertainty(const Options& options) {
   for (const std::string& text : options.varied) {
     vary(the_case, text);
     if (!varied.insert(the_case.uncertainty.parameters.back().name).second)
-      throw InputError("--vary " + text + ": varies twice");
+      throw InputError("--vary " + text + ": is specified more than once");
   }
   designs::UncertaintyOptions how = options.uncertainty;
   how.samples = static_cast<std::size_t>(options.samples);
@@ -73,8 +73,8 @@ int uncertainty(const Options& options) {
 
 Command add_uncertainty_command(CommandParser program) {
   auto options = std::make_shared<Options>();
-  CommandParser command = program.subcommand(
-      "uncertainty", "Say how far results are known where parameters have distributions");
+  CommandParser command =
+      program.subcommand("uncertainty", "Uncertainty of results from distributions of parameters");
   add_case(command, options->the_case);
   add_report(command, options->place,
              "report.html, report.json, outputs.csv, samples.csv and bands.csv");

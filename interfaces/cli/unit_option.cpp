@@ -9,26 +9,26 @@ void UnitOption::add_to(CommandParser command) {
   command
       .option("--fmu", file_,
               "a drive or load as a Functional Mock-up Unit (FMI 2.0 or 3.0, co-simulation) that "
-              "acts on the pump; both models get an instance of their own")
+              "acts on the pump; each model has its own instance")
       .text("FILE");
   command
       .option("--fmu-set", choice_.parameters,
-              "a parameter of the unit, in the unit it is declared in")
+              "a parameter of the FMU, in its declared unit of measure")
       .repeatable()
       .text("NAME=VALUE");
   command
       .option("--connect", choice_.connect,
               "A gets the value of B: an input of the pump (drive_speed, drive_acceleration, "
               "drive_torque, suction_pressure, delivery_pressure, load_share) that of an output of "
-              "the unit, or an input of the unit that of a column of the CSV files; equal names "
-              "are connected anyhow")
+              "the FMU, or an input of the FMU that of a column of the CSV files; equal names are "
+              "always connected")
       .repeatable()
       .text("A=B");
   command
       .option("--communication-step", choice_.step,
-              "s between the points at which pump and unit exchange values")
+              "s between the points at which pump and FMU exchange values")
       .positive_number()
-      .text("SECONDS [that of the unit, or between rows]");
+      .text("SECONDS [that of the FMU, or between rows]");
   command
       .option("--fmu-timeout", choice_.limits.call_seconds,
               "s, elapsed: the longest time that one call of a function of the FMU may take; 0: no "
@@ -42,7 +42,7 @@ std::shared_ptr<const study::UnitCoupling> UnitOption::coupling(const CommandPar
                                                                 bool oil_follows) const {
   for (const char* option : {"--fmu-set", "--connect", "--communication-step", "--fmu-timeout"})
     if (command.given(option) && !given())
-      throw InputError(std::string(option) + ": changes nothing: there is no --fmu");
+      throw InputError(std::string(option) + ": has no effect without --fmu");
   if (!given()) return nullptr;
   study::UnitChoice choice = choice_;
   choice.file = file_;

@@ -24,7 +24,7 @@ std::vector<report::CommonInput> transfer_inputs(const Case& the_case, bool moti
       inputs.push_back(
           {"line of action of the teeth (22)",
            the_case.pump.gear.contact == ToothContact::teeth
-               ? "of each pair where it touches; the arm (d/2) cos alpha_p, over which Rcs is "
+               ? "of each pair at its contact point; the arm (d/2) cos alpha_p, over which Rcs is "
                  "stated"
            : the_case.pump.gear.flanks == Flanks::two
                ? "one for each flank, whose separating part pushes the gears apart; written once "
@@ -36,8 +36,8 @@ std::vector<report::CommonInput> transfer_inputs(const Case& the_case, bool moti
                  "change is "
                  "among the limits of validity"
                : "high-precision curves and the frame of O4 check the algebra; that real teeth "
-                 "push "
-                 "otherwise backwards and on the other flank is among the limits of validity"});
+                 "have another line of action in reverse rotation and on the other flank is among "
+                 "the limits of validity"});
       break;
     case TransferKind::constant_velocity:
       inputs.push_back(

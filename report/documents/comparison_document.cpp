@@ -72,8 +72,8 @@ report::Section integration_section(const ComparisonResult& r) {
   section.title = "Integrated run and torque-driven run";
   section.text = fmt::format(
       "Integrator {}, {} revolution(s). Errors are the largest difference from the analytic model "
-      "over the peak. In the torque-driven run the shaft is free and fed the analytic Td; its "
-      "speed error is relative to omega. Facts are of the last accuracy.",
+      "over the peak. In the torque-driven run the shaft is free and driven by the analytic Td; "
+      "its speed error is relative to omega. Facts are of the last accuracy.",
       name_of(r.options.integration.integrator), r.second.the_case.operation.revolutions);
   section.table.columns = {"accuracy asked",
                            "error Rs",
@@ -109,7 +109,7 @@ report::Section integration_section(const ComparisonResult& r) {
 
 report::Section rounding_section(const std::vector<RoundingLine>& lines) {
   report::Section section;
-  section.title = "What rounding leaves of the digits";
+  section.title = "Digits lost to round-off";
   section.text =
       "First-order estimate of the analytic model: the effect of one unit in the last place of "
       "every input, and of rounding every operation the other way; shares of the reaction's peak.";
@@ -164,9 +164,9 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   report::Document document = case_document(description, the_case.name, program, std::move(scene));
   document.verdict = verdict_of(r);
   document.meaning =
-      "Two models that agree have solved the same equations correctly: that is verification. It "
-      "says nothing about what both leave out or share (tables below). Whether a real pump behaves "
-      "so is validation, and needs measurements.";
+      "Agreement verifies that both models solve the same equations correctly. It does not test "
+      "what both leave out or share (tables below). Validation, whether a real pump behaves like "
+      "this, needs measurements.";
   report::append(document.warnings, r.warnings);
   document.common = common_inputs(the_case, false);
   document.validity = validity_section(r.limits);
@@ -180,10 +180,10 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   document.key_figures = key_figures_of(r, document);
   if (r.split)
     document.assumptions = {
-        "The models were asked to assume different things. Each assumption's contribution is its "
+        "The models were run with different assumptions. Each assumption's contribution is its "
         "effect in the analytic model (of the flanks' shape: in the multibody model), averaged "
-        "over the orders in which the assumptions can be "
-        "taken over; what is left is a difference between the models themselves.",
+        "over the orders in which the assumptions can be applied; the rest is a difference between "
+        "the models themselves.",
         r.changes, *r.split};
   document.published = r.published;
   document.runs.emplace();

@@ -64,7 +64,7 @@ std::vector<report::Figure> channel_figures(const std::vector<const ResultTable*
                   [&](const ResultTable* table) { return has(*table, "Rcs_z4_N"); }))
     add("rcs", "Gear tooth force Rcs on the block, by the shaft, at O4, along z4", "Fig. 32 top",
         "N", {"Rcs_z4_N"}, extras("Rcs_z4_N"));
-  add("tcs", "Torque that carries the block round, about z2", "Fig. 32 bottom", "Nm", {"Tcs_z2_Nm"},
+  add("tcs", "Torque that drives the block, about z2", "Fig. 32 bottom", "Nm", {"Tcs_z2_Nm"},
       extras("Tcs_z2_Nm"));
   std::vector<std::string> shares;
   for (const Channel& channel : tables.front()->channels)
@@ -88,10 +88,9 @@ report::Figure budget_figure(const BudgetComparison& budgets) {
     if (budgets.analytic.peak(column) > 0 || budgets.multibody.peak(column) > 0)
       content.channels.push_back(column);
   }
-  return {
-      "torque_budget", "Drive torque by cause", "", std::move(content),
-      "The parts add up to Td at every angle; budget_analytic.csv and budget_multibody.csv hold "
-      "them."};
+  return {"torque_budget", "Drive torque by cause", "", std::move(content),
+          "The parts add up to Td at every angle; budget_analytic.csv and budget_multibody.csv "
+          "contain them."};
 }
 
 // Whether a figure of channels shows one of these.

@@ -152,7 +152,7 @@ Lines about(const Fig34Study& s, bool drag) {
     greatest = std::max(greatest, s.curves[i].largest_over.maximum);
   }
   if (c.both == 0) {
-    lines.emplace_back("So none of them can be what is printed.");
+    lines.emplace_back("So none of them can be the printed curve.");
     return lines;
   }
   lines.push_back(
@@ -218,13 +218,12 @@ Lines answers_of(const Fig34Study& s) {
 
 report::Summary summary_of(const Fig34Study& s) {
   report::Summary summary{
-      fmt::format(
-          "The tooth force along x2 of compliant flanks at the case's pressure and {:g} rpm, "
-          "{} windows of {} turns each after {} turns that are left out. A law stays inside and "
-          "reverses only where it does so in every window. Nothing here is a fit: the paper prints "
-          "axes and a periodic change of sign, no contact parameter.",
-          s.the_case.operation.speed_rpm, s.options.windows, s.options.turns,
-          s.options.turns_left_out),
+      fmt::format("The tooth force along x2 of compliant flanks at the case's pressure and {:g} "
+                  "rpm, {} windows of {} turns each after {} turns that are discarded. A law stays "
+                  "inside and reverses only where it does so in every window. Nothing is fitted: "
+                  "the paper prints axes and a periodic change of sign, but no contact parameter.",
+                  s.the_case.operation.speed_rpm, s.options.windows, s.options.turns,
+                  s.options.turns_left_out),
       {}};
   Lines rigid = {
       fmt::format("Without Cc {}, {:.1f} N at 0 deg and {:.1f} N at 38 deg; {:g} changes "
@@ -266,17 +265,16 @@ report::Section expectations_section(const Fig34Study& s) {
                             stated(f.greatest, f),
                             e.found.size() > 1 ? Cell(std::round(1000 * f.spread) / 10) : Cell(),
                             e.inside(f) ? "inside" : "outside"});
-  return {
-      "Expectations",
-      "Written down before the study: first tries with another program, and what follows from "
-      "the printed torques. The first tries name no damping that could be repeated: each is "
-      "shown for several, and counts as one that holds if it is inside for any of them. Found "
-      "over block inertias of 1000, 1500 and 2000 kg mm2 and over consecutive windows of the "
-      "same motion. Where these windows differ by more than 1 %, the motion does not repeat and "
-      "the range has two significant digits. The expected ranges are of the paper's pump "
-      "at 275 bar and 1500 rpm, whatever the case is.",
-      {},
-      std::move(table)};
+  return {"Expectations",
+          "Expectations written down before the study, from first tries with another program and "
+          "from the printed torques. The damping of the first tries is not known: each is shown "
+          "for several values and counts as confirmed if it is inside for any of them. Found over "
+          "block inertias of 1000, 1500 and 2000 kg mm2 and over consecutive windows of the same "
+          "motion. Where these windows differ by more than 1 %, the motion does not repeat and the "
+          "range has two significant digits. The expected ranges are of the paper's pump at 275 "
+          "bar and 1500 rpm, whatever the case is.",
+          {},
+          std::move(table)};
 }
 
 report::Section counts_section(const Fig34Study& s) {

@@ -106,13 +106,13 @@ Figure tooth_flanks(const DiagramRun& run, const ChannelLayout& at) {
     plus.push_back(!known ? not_computed() : drives ? force : 0);
     minus.push_back(!known ? not_computed() : drives ? 0 : force);
   }
-  figure.series = {{"flank + (carries the block towards +psi)", plus},
+  figure.series = {{"flank + (drives the block towards +psi)", plus},
                    {"flank - (holds it back)", minus}};
   return {"tooth_flanks", "Tooth force by flank, at O4", "", std::move(figure),
           run.the_case.pump.gear.flanks == Flanks::one &&
                   run.the_case.pump.gear.contact == ToothContact::rigid
-              ? "The sign of the torque that carries the block says which flank it would be; with "
-                "flanks = \"one\" the models take one line of action for both."
+              ? "The sign of the torque that drives the block determines the loaded flank; with "
+                "flanks = \"one\" the models use one line of action for both."
               : ""};
 }
 
@@ -124,16 +124,15 @@ Figure moment_shares(const DiagramRun& run, const ChannelLayout& at) {
     for (std::size_t row = 0; row < sum.size(); ++row) sum[row] += figure.stack.back().values[row];
   }
   figure.series = {{"sum", std::move(sum)}};
-  return {
-      "moment_shares", "Pistons' torque on the block about z2, piston upon piston", "",
-      std::move(figure),
-      "What drives the block upwards from 0, what holds it back downwards; the line is the sum. "
-      "By the " +
-          run.table.name + " model."};
+  return {"moment_shares", "Pistons' torque on the block about z2, piston upon piston", "",
+          std::move(figure),
+          "Driving contributions are above 0, braking contributions below; the line is the sum. By "
+          "the " +
+              run.table.name + " model."};
 }
 
 Figure chamber(const DiagramRun& run, const ChannelLayout& at) {
-  OwnFigure figure = over(run, "cm3", "volume above its least");
+  OwnFigure figure = over(run, "cm3", "volume above its minimum");
   const double bore = run.the_case.pump.geometry.bore_diameter;
   const double cm3_per_mm = kPi / 4 * bore * bore * 1e-3 * 1e6;
   Values ring = column(run, at.zB(0));  // mm
@@ -143,7 +142,7 @@ Figure chamber(const DiagramRun& run, const ChannelLayout& at) {
   figure.right =
       OwnFigure::Right{"pressure", "bar", {{"pressure of chamber 1", column(run, at.pressure(0))}}};
   return {"chamber", "Volume and pressure of chamber 1", "", std::move(figure),
-          "The volume is that swept by the piston's ring, from the deepest place that it reaches."};
+          "The volume is that swept by the ring of the piston, from its deepest position."};
 }
 
 }  // namespace

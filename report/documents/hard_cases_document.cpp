@@ -75,8 +75,7 @@ std::vector<report::Section> sections(const HardCaseStudy& study) {
     if (block == blocks.end())
       block = blocks.insert(
           block, {hard.group,
-                  "Digits of the worst reaction, in brackets those predicted, and which reaction "
-                  "it is.",
+                  "Digits of the worst reaction, its name, and the predicted digits in brackets.",
                   {},
                   {columns, {}}});
     std::vector<report::Cell> row = {hard.name, hard.hard, report::joined(hard.changes, ", ")};
@@ -175,7 +174,7 @@ report::Document hard_cases_document(const HardCaseStudy& study, const report::L
   document.verdict->answers = study.answers();
   document.meaning =
       "Digits are -log10 of the largest difference from the 50-digit curve over the peak of the "
-      "reaction; predicted are the digits that the rounding of inputs and arithmetic leaves "
+      "reaction; predicted are the digits that remain after rounding of inputs and arithmetic "
       "(docs/trust.md).";
   document.hard_cases = records(study);
   document.runs = sections(study);
@@ -221,7 +220,7 @@ std::string hard_cases_markdown(const HardCaseStudy& study) {
 
 std::string hard_cases_heading() {
   return fmt::format("{:<24} {:<10} {:<9} {:>7} {:>10} {:>9}  {}\n", "case", "model", "verdict",
-                     "digits", "predicted", "us/angle", "least in, message");
+                     "digits", "predicted", "us/angle", "lowest in, message");
 }
 
 std::string text_of(const HardCaseRun& run) {

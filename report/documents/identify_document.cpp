@@ -110,7 +110,7 @@ std::string fit_text(const GoodnessOfFit& fit) {
   if (!fit.p_value) return "no test of the fit: " + test;
   if (fit.uncertainties_too_large())
     return fmt::format(
-        "fit: {}: not refuted; residuals are smaller than the stated uncertainties let expect",
+        "fit: {}: not refuted; residuals are smaller than expected from the stated uncertainties",
         test);
   return fmt::format("fit: {}: not refuted", test);
 }
@@ -180,7 +180,7 @@ std::string further_text(const DataModel& model, const Identification& result) {
   std::string text = "the further unknown that would improve the fit most: " +
                      further_line(model, result.further.front());
   if (const auto names = as_good_as_best(result); !names.empty())
-    text += ". The data cannot tell it from " + report::joined(names);
+    text += ". The data do not distinguish it from " + report::joined(names);
   return text;
 }
 
@@ -197,9 +197,7 @@ Section goodness_section(const Identification& result) {
   section.facts = {{"result", fit_text(fit)}};
   if (!fit.p_value)
     section.facts.emplace_back(
-        "no test",
-        "There are as many fitted unknowns as data: nothing is left by which "
-        "the model could be tested.");
+        "no test", "There are as many fitted unknowns as data: the model cannot be tested.");
   if (fit.refuted()) {
     section.facts.emplace_back("withheld", kWithheld);
     section.facts.emplace_back("widened", birge_text(fit));
@@ -239,9 +237,9 @@ Section further_section(const DataModel& model, const Identification& result) {
   section.title = "Which further unknown would improve the fit most";
   section.text =
       "All continuous parameters that are active in the case and not unknown were compared by the "
-      "derivatives of the residuals. Those that promise most were each fitted together with the "
-      "unknowns. A better fit is no proof that this parameter is wrong: several can have the same "
-      "effect on the data.";
+      "derivatives of the residuals. The most promising ones were each fitted together with the "
+      "unknowns. A better fit does not prove that this parameter is wrong: several can have the "
+      "same effect on the data.";
   section.facts = {{"result", further_text(model, result)}};
   section.table.columns = {"parameter", "unit",       "in the case",
                            "fitted",    "chi-square", "degrees of freedom",
@@ -278,11 +276,11 @@ Section unknowns_section(const DataModel& model, const Identification& result) {
   Section section;
   section.title = "Unknowns";
   section.text =
-      "Identified: the least sum of squares. Linear: standard uncertainty as if the model were "
-      "linear there and bounds normal. Profile: 95 % limits, the others fitted anew, where the sum "
-      "of squares has risen by 3.841; a limit at a bound is the bound's, not the data's. "
-      "Posterior: 95 % of the draws. All of them are right only where the stated uncertainties are "
-      "right: a rise of 3.841 means 95 % for that noise alone.";
+      "Identified: minimum of the sum of squares. Linear: standard uncertainty of a linearised "
+      "model with bounds as normal priors. Profile: 95 % limits, at which the sum of squares has "
+      "increased by 3.841 with the other unknowns fitted again; a limit at a bound follows from "
+      "the bound, not from the data. Posterior: 95 % of the draws. All of them are right only "
+      "where the stated uncertainties are right: a rise of 3.841 means 95 % for that noise alone.";
   if (result.goodness.refuted()) {
     section.facts.emplace_back("withheld", kWithheld);
     section.facts.emplace_back("widened", birge_text(result.goodness));
@@ -324,8 +322,9 @@ Section determined_section(const DataModel& model, const Identification& result)
   Section section;
   section.title = "What the data determine";
   section.text =
-      "From the derivatives of the fitted data at the solution. A window that is kept says nothing "
-      "there, although it limits how far one can go: profiles and posterior know.";
+      "From the derivatives of the fitted data at the solution. A window that is met has no "
+      "derivative there, although it limits the range: profiles and posterior take it into "
+      "account.";
   for (const std::string& line : result.information.words) section.facts.emplace_back("", line);
   section.table.columns = {"direction", "times narrower than the bounds", "mostly along"};
   for (std::size_t d = 0; d < result.information.directions.size(); ++d) {
@@ -348,9 +347,9 @@ Section fitted_section(const DataModel& model, const Identification& result) {
   Section section;
   section.title = "Data that unknowns are fitted to";
   section.text =
-      "Residual: model minus datum over its standard uncertainty, 0 inside a window. Left out: "
-      "what the others predict for it, with its bounds as normal priors, and how far off that is "
-      "over the standard uncertainty of prediction and datum together";
+      "Residual: model minus datum over its standard uncertainty, 0 inside a window. "
+      "Leave-one-out: prediction from the other data, with bounds as normal priors, and its error "
+      "over the combined standard uncertainty of prediction and datum";
   section.text += result.goodness.refuted()
                       ? ", both as stated: as the fit is refuted, they are too small."
                       : ".";
@@ -438,10 +437,10 @@ Section left_out_section(const DataModel& model) {
 Section reactions_section(const DataModel& model, const Identification& result) {
   const ChannelLayout layout(model.base().pump);
   Section section;
-  section.title = "How well each reaction is known";
+  section.title = "Uncertainty of each reaction";
   section.text =
       "Half the width of the 95 % band where it is widest, of the peak of its middle curve, at the "
-      "case's own speed and pressure. Parameters that are not unknown count as known.";
+      "case's own speed and pressure. All other parameters are taken as known.";
   section.table.columns = {"reaction", "half width, % of peak"};
   for (const ReactionBand& band : result.bands)
     section.table.rows.push_back({layout.channels()[band.column].name, 100 * band.half_width});
@@ -451,7 +450,7 @@ Section reactions_section(const DataModel& model, const Identification& result) 
 Section candidates_section(const Identification& result) {
   constexpr std::size_t kShown = 12;
   Section section;
-  section.title = "Which measurement would help most";
+  section.title = "Most useful further measurements";
   section.text =
       "By how much the bands would become narrower, mean over the reactions, if that number were "
       "measured too: linear, from the covariances of the draws.";
@@ -477,7 +476,7 @@ Section search_section(const DataModel& model, const Identification& result) {
     const auto& p = result.posterior;
     section.facts.emplace_back("moves accepted", fmt::format("{:.0f} %", 100 * p.accepted));
     section.facts.emplace_back("independent draws, of the worst unknown",
-                               unsettled(result) ? "not known: the walkers have not settled"
+                               unsettled(result) ? "not determined: the chains have not converged"
                                                  : fmt::format("{:.0f}", p.effective));
     section.facts.emplace_back(
         "largest R-hat", fmt::format("{:.3f}", *std::max_element(p.rhat.begin(), p.rhat.end())));
@@ -496,7 +495,7 @@ std::vector<report::Figure> figures_of(const DataModel& model, const Identificat
     report::BarsFigure known{{"half width of the 95 % band", "% of peak"}, {}};
     for (const ReactionBand& band : result.bands)
       known.bars.push_back({layout.channels()[band.column].name, 0, 100 * band.half_width});
-    figures.push_back({"known", "How well each reaction is known", "", known});
+    figures.push_back({"known", "Uncertainty of each reaction", "", known});
     for (const ReactionBand& band : result.bands) {
       const Channel& channel = layout.channels()[band.column];
       report::BandFigure figure;
@@ -505,8 +504,8 @@ std::vector<report::Figure> figures_of(const DataModel& model, const Identificat
       figure.angle = true;
       figure.x_values = result.theta_deg;
       figure.bands = {{"95 % of the posterior", band.low, band.middle, band.high}};
-      figures.push_back({"band_" + channel.name, channel.name + ": what the data leave open", "",
-                         std::move(figure)});
+      figures.push_back({"band_" + channel.name, channel.name + ": what the data do not determine",
+                         "", std::move(figure)});
     }
   }
   for (std::size_t i = 0; i < result.profiles.size(); ++i) {
@@ -544,13 +543,13 @@ std::string headline_of(const DataModel& model, const Identification& result) {
       }
   if (missed > 0)
     text +=
-        fmt::format("; {} of {} predicted data are not met by their 95 % bands", missed, predicted);
+        fmt::format("; {} of {} predicted data are outside their 95 % bands", missed, predicted);
   const auto [best, worst] = std::minmax_element(
       result.bands.begin(), result.bands.end(),
       [](const ReactionBand& a, const ReactionBand& b) { return a.half_width < b.half_width; });
   const ChannelLayout layout(model.base().pump);
   return text + fmt::format("; reactions are known {}to {:.2g} % ({}) .. {:.2g} % ({}) of peak",
-                            unsettled(result) ? "roughly (posterior not settled) " : "",
+                            unsettled(result) ? "roughly (posterior not converged) " : "",
                             100 * best->half_width, layout.channels()[best->column].name,
                             100 * worst->half_width, layout.channels()[worst->column].name);
 }
@@ -615,22 +614,22 @@ report::Document identify_document(const DataModel& model, const Identification&
             "a parameter that was not unknown is wrong, or the model leaves out an effect, or "
             "uncertainties are stated too small, or the search missed the best fit (--starts). The "
             "identified values fit best, but they do not describe the pump."
-          : "What data say about the parameters of the model, given that the model is right and "
-            "that what is not unknown is known. A fit that is not refuted is no validation: only "
-            "data that nothing was fitted to are.";
+          : "Parameters of the model determined from data, assuming that the model is right and "
+            "that all other parameters are known. A fit that is not refuted is not a validation: "
+            "only data that nothing was fitted to can validate.";
   std::vector<report::Warning> warnings;
   if (result.goodness.uncertainties_too_large())
     warnings.push_back(
         {"Stated uncertainties too large",
-         fmt::format("{}: the residuals are smaller than the stated uncertainties let expect. "
+         fmt::format("{}: the residuals are smaller than expected from the stated uncertainties. "
                      "Either these are stated too large, and then all intervals are too wide; or "
                      "the data are not independent of each other, as points of a smoothed record",
                      test_text(result.goodness))});
   if (const auto rhat = unsettled(result))
     warnings.push_back(
         {"Posterior not settled",
-         fmt::format("R-hat {:.3g}, above {:g}: the walkers still are where they began, and bands "
-                     "are a rough size only. More --steps, fewer unknowns or narrower bounds help",
+         fmt::format("R-hat {:.3g}, above {:g}: the chains have not converged, and the bands are "
+                     "rough estimates only. More --steps, fewer unknowns or narrower bounds help",
                      *rhat, kSettled)});
   if (!warnings.empty()) report::append(document.warnings, std::move(warnings));
   document.runs = {goodness_section(result), worst_section(model, result)};
@@ -659,8 +658,8 @@ std::string identify_text(const DataModel& model, const Identification& result) 
     text += std::string(kWithheld) + "\n" + birge_text(result.goodness) + "\n";
   }
   if (const auto rhat = unsettled(result))
-    text +=
-        fmt::format("posterior not settled: R-hat {:.3g}; bands are a rough size only\n", *rhat);
+    text += fmt::format("posterior not converged: R-hat {:.3g}; bands are rough estimates only\n",
+                        *rhat);
   while (text.ends_with('\n')) text.pop_back();
   return text;
 }

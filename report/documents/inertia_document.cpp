@@ -134,14 +134,15 @@ Figure fraction_figure(const InertiaStudy& s) {
 }
 
 Figure approach_figure(const InertiaStudy& s) {
-  return {"approach",
-          "Simbody: the real piston tends to the lumped one as its inertia does, " + rpm(s.fastest),
-          "",
-          report::XyFigure{{"t: 1 = real piston, 0 = moments of the lumped one", "", true},
-                           {"difference from the lumped scene", "N", true},
-                           both_errors(s.approach, &Approach::t)},
-          "A rigid body with free spin against a massless rod with two point masses: two "
-          "different Simbody bodies and joints."};
+  return {
+      "approach",
+      "Simbody: the real piston converges to the lumped one as its inertia does, " + rpm(s.fastest),
+      "",
+      report::XyFigure{{"t: 1 = real piston, 0 = moments of the lumped one", "", true},
+                       {"difference from the lumped scene", "N", true},
+                       both_errors(s.approach, &Approach::t)},
+      "A rigid body with free spin against a massless rod with two point masses: two "
+      "different Simbody bodies and joints."};
 }
 
 Figure map_figure(const InertiaStudy& s, const std::string& symbol,
@@ -220,7 +221,7 @@ report::Section causes_section(const InertiaStudy& s) {
   return {"Where the error comes from",
           "From two masses to the real piston three things change; each is switched alone, without "
           "load at " +
-              rpm(s.fastest) + ". As vectors the three add up to the whole exactly.",
+              rpm(s.fastest) + ". As vectors the three add up exactly to the total.",
           {{"largest part the three do not explain", fmt::format("{:.1e} N", s.causes.rest)}},
           std::move(table)};
 }
@@ -241,7 +242,7 @@ report::Section lumping_section(const InertiaStudy& s) {
   else
     facts = {{"three point masses", "do not exist: the centre of mass is not between A and B"}};
   return {"Which lumping is best",
-          "Error left, largest over the turn, without load at " + rpm(s.fastest) +
+          "Remaining error, maximum over the turn, without load at " + rpm(s.fastest) +
               ". Three point masses ([piston] inertia = \"dynamically_equivalent\") leave the "
               "gyroscopic moment of spin only.",
           std::move(facts), std::move(table)};
@@ -285,9 +286,9 @@ report::Section cost_section(const InertiaStudy& s) {
 
 report::PublishedTable published_table(compare::PublishedSection section) {
   return {
-      "The paper's figures are of the Casappa BAP 63 at 1500 and 2350 rpm without load. They say "
-      "something about this case as far as it is that pump at those speeds; its geometry and "
-      "masses are not printed and were inferred.",
+      "The paper's figures are of the Casappa BAP 63 at 1500 and 2350 rpm without load. They apply "
+      "to this case only as far as it is that pump at those speeds; its geometry and masses are "
+      "not printed and were inferred.",
       std::move(section)};
 }
 
@@ -373,21 +374,20 @@ InertiaReport inertia_report(const InertiaStudy& s,
   document.verdict = report::Verdict{s.agrees(), headline(s)};
   document.verdict->tolerance = kInertiaModelsAgree;
   document.verdict->answers = answers_of(s);
-  document.runs = {
-      {"Error of lumping on a piston's reactions",
-       "Largest magnitude of two masses - real over the turn. Reactions are linear in the inertia "
-       "forces, so load does not change the error (but for the weight); it changes what the error "
-       "is measured by.",
-       {},
-       error_table(s.one_piston, {"Rs", "Rc"})},
-      {"Error of lumping on bearings, gear and torque",
-       "Full pump, both models.",
-       {},
-       error_table(s.full, {"Rb1", "Rb2", "Rcs", "Rcn", "Td"})},
-      causes_section(s),
-      lumping_section(s),
-      approach_section(s),
-      cost_section(s)};
+  document.runs = {{"Error of lumping on a piston's reactions",
+                    "Largest magnitude of two masses - real over the turn. Reactions are linear in "
+                    "the inertia forces, so load does not change the error (but for the weight); "
+                    "it changes the peak that the error is relative to.",
+                    {},
+                    error_table(s.one_piston, {"Rs", "Rc"})},
+                   {"Error of lumping on bearings, gear and torque",
+                    "Full pump, both models.",
+                    {},
+                    error_table(s.full, {"Rb1", "Rb2", "Rcs", "Rcn", "Td"})},
+                   causes_section(s),
+                   lumping_section(s),
+                   approach_section(s),
+                   cost_section(s)};
   if (published) document.published = published_table(std::move(*published));
   document.figures = all_figures(s, curves);
   return result;

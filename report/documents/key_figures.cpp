@@ -83,7 +83,7 @@ std::vector<Row> turn_figures(const Tables& tables) {
   std::vector<Row> rows;
   add(rows, torque_row(summaries, "drive torque, mean", "Nm",
                        [](const TurnSummary::Torque& torque) { return torque.mean; }));
-  add(rows, torque_row(summaries, "drive torque, greatest less least over the mean", "%",
+  add(rows, torque_row(summaries, "drive torque, maximum less minimum over the mean", "%",
                        [](const TurnSummary::Torque& torque) { return torque.ripple(); }));
   append(rows, peaks(summaries, tables.front()->theta_deg));
   return rows;
@@ -104,8 +104,8 @@ std::vector<Row> oil_figures(const hydraulics::Summary& s, std::size_t models) {
     if (models > 1) made.note = "of the oil, given to both models";
     return made;
   };
-  Row least = row("chamber pressure, least", "bar", s.chamber_least / kPascalPerBar);
-  Row greatest = row("chamber pressure, greatest", "bar", s.chamber_greatest / kPascalPerBar);
+  Row least = row("chamber pressure, minimum", "bar", s.chamber_least / kPascalPerBar);
+  Row greatest = row("chamber pressure, maximum", "bar", s.chamber_greatest / kPascalPerBar);
   for (Row* of_chamber : {&least, &greatest})
     of_chamber->note +=
         of_chamber->note.empty() ? "angle of the chamber" : "; angle of the chamber";
@@ -114,7 +114,7 @@ std::vector<Row> oil_figures(const hydraulics::Summary& s, std::size_t models) {
   Row flow = row("flow to the load, mean", "l/min", s.flow / kLitrePerMinute);
   flow.note += std::string(flow.note.empty() ? "" : "; ") + "at the density in the suction port";
   return {std::move(flow),
-          row("flow to the load, greatest less least over the mean", "%", 100 * s.flow_ripple),
+          row("flow to the load, maximum less minimum over the mean", "%", 100 * s.flow_ripple),
           row("volumetric efficiency", "%", 100 * s.volumetric_efficiency), std::move(least),
           std::move(greatest)};
 }

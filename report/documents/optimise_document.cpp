@@ -218,7 +218,8 @@ report::Section sureness_section(const Optimisation& found) {
   section.title = "How sure this is";
   section.text =
       "Searches from different points that end at the same front, and gradients that find no "
-      "better design nearby, are good signs; no search proves that there is no better design.";
+      "better design nearby, indicate convergence; no search proves that there is no better "
+      "design.";
   section.facts = {
       {"search", search_libraries() + (objectives(found).size() > 1
                                            ? "; NSGA-II, then SLSQP from the best designs"
@@ -258,8 +259,8 @@ report::Section sureness_section(const Optimisation& found) {
 
 std::string headline(const Optimisation& found) {
   if (found.chosen.empty())
-    return fmt::format("none of {} designs keeps all constraints", found.evaluated());
-  return fmt::format("{} designs evaluated, {} keep all constraints", found.evaluated(),
+    return fmt::format("none of {} designs satisfies all constraints", found.evaluated());
+  return fmt::format("{} designs evaluated, {} satisfy all constraints", found.evaluated(),
                      found.feasible());
 }
 
@@ -272,10 +273,10 @@ std::vector<std::string> optimise_answers(const Optimisation& found) {
       std::string reason;
       for (const auto& [design, why] : found.designs.infeasible)
         if (design == *nearest) reason = why;
-      answers.push_back(fmt::format("The nearest miss is design {}, {}: {}.", *nearest,
-                                    view.text(*nearest), reason));
+      answers.push_back(fmt::format("The design closest to feasible is design {}, {}: {}.",
+                                    *nearest, view.text(*nearest), reason));
     }
-    answers.emplace_back("Widen a range of --vary, or ease a --subject-to.");
+    answers.emplace_back("Widen a range of --vary or relax a --subject-to.");
     return answers;
   }
   for (std::size_t i = 0; i < found.chosen.size(); ++i) {
@@ -290,7 +291,7 @@ std::vector<std::string> optimise_answers(const Optimisation& found) {
         limits.empty() ? "" : fmt::format("; at its limit: {}", fmt::join(limits, ", "))));
   }
   if (!found.own.reason.empty())
-    answers.push_back("The case itself is no feasible design: " + found.own.reason + ".");
+    answers.push_back("The case itself is not a feasible design: " + found.own.reason + ".");
   std::string sure;
   if (found.shares_of_front.size() > 1) {
     const double least =

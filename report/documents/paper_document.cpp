@@ -99,8 +99,8 @@ std::string headline(const PaperStudy& s) {
     worst.keep_larger(other_model(p));
   }
   return fmt::format(
-      "{} of {} panels with a known axis hold our curves{}; {} axes are unknown; drawings have "
-      "none. At the same assumptions the models differ by up to {} of peak.",
+      "{} of {} panels with a known axis contain our curves{}; {} axes are unknown; "
+      "drawings have none. At the same assumptions the models differ by up to {} of peak.",
       c.inside, c.known, outside.empty() ? "" : " (outside: " + outside + ")", c.unknown,
       worst.share_text());
 }
@@ -110,7 +110,7 @@ std::vector<std::string> answers_of(const PaperStudy& s) {
   std::vector<std::string> answers;
   for (const DrawnPanel& p : s.panels)
     if (p.known() && !p.inside())
-      answers.push_back(p.figure.name(p.panel) + " does not hold our curves: " + leaving(p) +
+      answers.push_back(p.figure.name(p.panel) + " does not contain our curves: " + leaving(p) +
                         (p.panel.outside.empty() ? "" : ": " + p.panel.outside) + ".");
   compare::PublishedSummary numbers;
   for (const PaperNumber& number : s.numbers) numbers.count(number.row);
@@ -140,14 +140,13 @@ report::Section figures_section(const PaperStudy& s) {
         table.rows.push_back({figure.name(), figure.shows, figure.condition, "none: a drawing",
                               Cell(), "drawn", Cell(), figure.note});
   }
-  report::Section section{
-      "The figures",
-      "The curves are not available: an axis is a window that a curve must not leave, and what is "
-      "inside need not be the curve. Most axes of reactions at rated pressure were used to infer "
-      "the geometry of this pump, which is not published: being inside them is no evidence "
-      "(docs/limits.md).",
-      {},
-      std::move(table)};
+  report::Section section{"The figures",
+                          "The curves are not available: an axis is a window for the curve; a "
+                          "curve inside it need not be the printed one. Most axes of reactions at "
+                          "rated pressure were used to infer the geometry of this pump, which is "
+                          "not published: being inside them is no evidence (docs/limits.md).",
+                          {},
+                          std::move(table)};
   for (const auto& of : s.list.cases)
     section.facts.emplace_back(of.condition,
                                of.inertia_alone_at_rpm ? of.file + ", inertia alone" : of.file);
@@ -169,8 +168,8 @@ report::Section numbers_section(const PaperStudy& s) {
                           value(1), compare::to_string(row.verdict), row.number.status});
   }
   return {"Numbers printed with them",
-          "What the paper says in numbers about these figures, by the same cases. Only predicted "
-          "rows say something about the models.",
+          "Numbers that the paper states about these figures, computed from the same cases. Only "
+          "predicted rows test the models.",
           {},
           std::move(table)};
 }

@@ -145,7 +145,7 @@ report::Figure plate_pressure(const DiagramRun& run) {
           frame.lines.push_back(std::move(stroke));
         }
       } else {
-        frame.text += ", beyond the picture";
+        frame.text += ", outside the picture";
       }
     }
     drawing.frames.push_back(std::move(frame));

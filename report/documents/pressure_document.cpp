@@ -80,8 +80,8 @@ void add_curve(report::Document& document, const TorqueCurve& curve) {
   add_series(torque, "ideal: displacement x pressure / 2 pi", curve.ideal);
   report::Figure flow =
       own_figure("flow_curve", "Mean flow against delivery pressure", "", "l/min", axis, curve.bar);
-  add_series(flow, "to the load, at the density in the suction port", curve.flow);
-  add_series(flow, "to the load, at the density of the mean delivery pressure",
+  add_series(flow, "volume flow to the load, at the density in the suction port", curve.flow);
+  add_series(flow, "volume flow to the load, at the density of the mean delivery pressure",
              curve.flow_at_delivery);
   document.figures->push_back(std::move(torque));
   document.figures->push_back(std::move(flow));
@@ -160,9 +160,8 @@ void add_published(report::Document& document, compare::PublishedSection section
   const std::string text =
       section.summary.text() +
       " Used to infer: the number went into the geometry of this case, which is not published. "
-      "Calibrated: a parameter was set so that the number comes out. Only predicted rows say "
-      "something about the models; a window is the range of a printed axis, in which the lost "
-      "curve must have been.";
+      "Calibrated: a parameter was set to reproduce the number. Only predicted rows test the "
+      "models; a window is the range of a printed axis, which contains the printed curve.";
   document.verdict->agrees = section.calibrated();
   document.verdict->word = section.calibrated() ? "Calibrated" : "Not calibrated";
   document.verdict->headline +=
@@ -218,7 +217,7 @@ std::string pressure_text(const OperatingPoint& point, const hydraulics::PowerBu
   for (const auto& line : hydraulics::lines(point.state())) add(line.name, line.value, line.unit);
   for (const hydraulics::Place place : point.state().places)
     add(fmt::format("power, {}", hydraulics::name_of(place)), power[place], "W");
-  add("power left over, of the pistons' power",
+  add("residual power, of the power of the pistons",
       hydraulics::left_over(power) / power[hydraulics::Place::pistons], "");
   const hydraulics::PumpPower oil = hydraulics::pump_power(power);
   add("power of the flow to the load", oil.useful, "W");

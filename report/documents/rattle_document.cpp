@@ -67,7 +67,8 @@ std::string headline(const RattleMap& map) {
   text += fmt::format("; Simbody agrees at {} of {} points", agreeing(map), map.checks.size());
   const auto partly = std::count_if(map.checks.begin(), map.checks.end(),
                                     [](const RattleCheck& check) { return check.chaotic(); });
-  if (partly > 0) text += fmt::format(", {} of them judged over part of their turns only", partly);
+  if (partly > 0)
+    text += fmt::format(", {} of them compared over part of their turns only", partly);
   return text;
 }
 
@@ -104,10 +105,10 @@ std::vector<std::string> answers_of(const RattleMap& map) {
   const std::string open =
       unknown == 0 ? "" : fmt::format(" {} of its speeds could not be computed.", unknown);
   return {at +
-          (text.empty() ? "the teeth carry at all speeds of the map."
-                        : "avoid " + text +
-                              " rpm: the teeth do not carry all through the "
-                              "turn (speeds of the map).") +
+          (text.empty()
+               ? "the teeth are loaded throughout the turn at all speeds of the map."
+               : "avoid " + text +
+                     " rpm: the teeth are not loaded throughout the turn (speeds of the map).") +
           open};
 }
 
@@ -140,11 +141,11 @@ std::string agreement_text(const BoundaryAgreement& agreement) {
 report::Section settings_section(const RattleMap& map) {
   const RattleOptions& o = map.options;
   report::Section section{"How it was computed", "", {}, {}};
-  section.facts = {{"shaft", "turns at the constant speed of the point, whatever [drive] says"}};
+  section.facts = {{"shaft", "constant speed of the point; [drive] is not used"}};
   if (rigid(map)) {
     section.text =
-        "Teeth are rigid: the block turns as the shaft does, nothing moves between the flanks. "
-        "Only carrying and reversing are told apart, by the sign of the tooth force.";
+        "Teeth are rigid: block and shaft have the same angle. Only loaded and reversing are "
+        "distinguished, by the sign of the tooth force.";
     return section;
   }
   const auto add = [&](const char* name, const std::string& text) {
@@ -153,7 +154,8 @@ report::Section settings_section(const RattleMap& map) {
   add("first point",
       "the lowest speed, from theta = psi = 0, the middle of the backlash, both at "
       "the shaft's speed");
-  add("every other point", "from where the teeth ended at its neighbour: up in speed, then down");
+  add("every other point",
+      "from the final state of the neighbouring point: up in speed, then down");
   add("discarded", fmt::format("{} turns, fewer where the motion repeats itself", o.discard));
   add("observed", fmt::format("{} turns, or one period where the motion repeats itself", o.turns));
   add("repeats itself",
@@ -221,8 +223,8 @@ report::Section boundary_section(const BoundaryAgreement& agreement) {
 
 report::Section states_section(const RattleMap& map) {
   report::Section section{"Two steady states",
-                          "Where the upward and the downward sweep settle differently. No period: "
-                          "irregular, longer, or still ringing.",
+                          "Points where the upward and the downward sweep converge to different "
+                          "motions. No period: irregular, longer, or still decaying.",
                           {{"points", std::to_string(two_states_of(map))}},
                           {{"delivery pressure, bar", "speed, rpm", "up", "down", "largest up, N",
                             "largest down, N", "period up, turns", "period down, turns"},
@@ -245,13 +247,14 @@ report::Section checks_section(const RattleMap& map) {
   report::Section section{
       "Recomputed by Simbody",
       "Points spread over the classes, through the observed turns from the state at which they "
-      "begin. A second start of the closed form, moved a little, tells how disturbances grow: the "
-      "largest force may differ by the errors of the steps grown so. Where they have grown too far "
-      "nothing more is judged; such a motion is chaotic, and what follows agrees only in kind. "
-      "Where both differ in class, the closed form's stands first.",
+      "begin. A second run of the closed form from a slightly disturbed state measures the "
+      "amplification of disturbances: the tolerance of the largest force is the integration error "
+      "times this factor. Where the factor is too large, nothing is compared; such a motion is "
+      "chaotic, and later results agree only in kind. Where the classes differ, that of the closed "
+      "form is given first.",
       {{"agree", fmt::format("{} of {}", agreeing(map), map.checks.size())}},
-      {{"bar", "rpm", "class", "turns judged", "of", "growth", "largest force apart by", "allowed",
-        "agrees", "all turns: class", "largest, N", "Simbody, N"},
+      {{"bar", "rpm", "class", "turns compared", "of", "growth", "largest force apart by",
+        "allowed", "agrees", "all turns: class", "largest, N", "Simbody, N"},
        {}}};
   for (const RattleCheck& c : map.checks)
     section.table.rows.push_back({map.options.delivery_bar[c.row], map.options.speed_rpm[c.speed],
@@ -338,13 +341,13 @@ class MapFigures {
 std::vector<report::Figure> map_figures(const RattleMap& map) {
   const MapFigures make(map);
   std::vector<report::Figure> figures = {
-      make.classes("classes", "What the teeth do, swept up in speed", &RattleRow::up)};
+      make.classes("classes", "Motion of the teeth, speed swept up", &RattleRow::up)};
   figures.front().note =
       "One rectangle per point. The line is where the smallest force of rigid teeth over the turn "
       "passes 0.";
   if (!rigid(map)) {
     figures.push_back(
-        make.classes("classes_down", "What the teeth do, swept down in speed", &RattleRow::down));
+        make.classes("classes_down", "Motion of the teeth, speed swept down", &RattleRow::down));
     figures.push_back(make.linear("apart", "Share of the time without contact, swept up",
                                   {"share of the time", "%"},
                                   [](const RattlePoint& p) { return 100 * p.apart; }));
@@ -371,13 +374,13 @@ report::Document rattle_document(const RattleMap& map, const report::Lines& prog
     document.verdict->agrees.reset();
     document.verdict->word = "Map";
   }
-  document.meaning =
-      map.checks.empty()
-          ? "What the closed form's teeth do; a class is that of the observed turns, under the "
-            "thresholds below. Nothing was compared: --check-points N recomputes points by Simbody."
-          : "What the closed form's teeth do; a class is that of the observed turns, under the "
-            "thresholds below. Simbody's model, from the same states, says whether both follow the "
-            "same description.";
+  document.meaning = map.checks.empty()
+                         ? "Motion of the teeth by the closed form; a class is that of the "
+                           "observed turns, with the thresholds below. Nothing was compared: "
+                           "--check-points N recomputes points by Simbody."
+                         : "Motion of the teeth by the closed form; a class is that of the "
+                           "observed turns, with the thresholds below. Simbody's model, from the "
+                           "same states, verifies the equations of motion.";
   document.runs.emplace();
   document.runs->push_back(settings_section(map));
   document.runs->push_back(classes_section(map));
@@ -399,7 +402,7 @@ std::string rattle_text(const RattleMap& map) {
   for (const RattleCheck& c : map.checks)
     text += fmt::format(
         "Simbody at {:g} bar, {:g} rpm: {}: {}, largest force {:.1e} apart, {:.1e} allowed, {:g} "
-        "of {:g} turns judged{}\n",
+        "of {:g} turns compared{}\n",
         map.options.delivery_bar[c.row], map.options.speed_rpm[c.speed],
         c.agrees() ? "agrees" : "differs", against(c.analytic, c.multibody), c.difference,
         c.allowed, turns_of(c.judged), turns_of(c.parts),

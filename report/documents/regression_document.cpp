@@ -227,7 +227,7 @@ report::Document regression_document(const std::vector<Outcome>& outcomes, const
   document.meaning =
       "High-precision curves verify: they were computed independently. Golden curves detect "
       "changes of the program. External curves are another tool's or a rig's. A missing curve is "
-      "neither agreement nor disagreement.";
+      "not compared.";
   document.warnings.emplace();
   for (const auto& outcome : outcomes)
     if (!outcome.error.empty()) document.warnings->push_back({outcome.name, outcome.error});

@@ -197,7 +197,7 @@ Section check_section(const Sensitivities& s, const SensitivityCheck& check) {
       {{"output", "parameter", "derivative", "by the other model", "its error", "difference"}, {}}};
   if (check.missing > 0)
     section.facts = {
-        {"not compared", fmt::format("{}: one model has none, or differences that are not as sharp",
+        {"not compared", fmt::format("{}: one model has none, or its differences are less accurate",
                                      check.missing)}};
   for (std::size_t o = 0; o < s.outputs.size(); ++o)
     for (std::size_t v = 0; v < s.variables.size(); ++v)
@@ -228,13 +228,13 @@ report::Document sensitivity_document(const Sensitivities& found,
   if (!found.left_out.empty())
     report::append(document.warnings, report::Warning{"interrupted", left_out_text(found)});
   document.meaning =
-      "A derivative holds for small changes of one parameter, the others staying. An exact one is "
-      "right to round-off; one by differences has the error beside it. A largest or least value "
-      "changes as at the sample that attains it; where several do, the derivative is the mean of "
-      "those to either side, and its error what each differs by.";
+      "A derivative is valid for small changes of one parameter with the others constant. An exact "
+      "derivative is accurate to round-off; one by differences has its error beside it. The "
+      "derivative of a maximum or minimum is that at its sample; where several samples attain it, "
+      "it is the mean of the one-sided derivatives, and its error is their half difference.";
   if (found.base.pressure.kind == PressureKind::hydraulic)
     document.meaning +=
-        " The pressure is that of a periodic state: each difference is one of two such states.";
+        " The pressure is that of a periodic state: each difference compares two such states.";
   std::vector<Section> sections = {outputs_section(found)};
   std::vector<report::Figure> figures;
   for (std::size_t o = 0; o < found.outputs.size(); ++o) {

@@ -82,7 +82,7 @@ std::vector<Figure> figures_of(const SimulationResult& r) {
   add("td", "Drive torque Td", "Nm", {"Td_z1_Nm"});
   add("pressure",
       r.oil_follows ? "Chamber pressure of piston 1"
-                    : "Chamber pressure of piston 1, which both models take at the block's angle",
+                    : "Chamber pressure of piston 1, at the angle of the block in each model",
       "bar", {"p_1_bar"});
   if (r.oil_follows) {
     add("ports", "Pressures of the ports", "bar", columns_of(r, "bar"));
@@ -118,12 +118,12 @@ Figure difference_figure(const SimulationResult& r) {
   report::XyFigure content{{"time", "ms"}, {"difference over peak", "", true}, {}};
   content.series = {
       {"of the models, largest of any reaction", times, positive(r.difference)},
-      {"allowed: wanted error, grown", times, allowed},
+      {"tolerance: wanted error times amplification", times, allowed},
       {fmt::format("after a disturbance of {:g} at the start", r.disturbance), times, disturbed}};
-  return {
-      "difference", "Difference of the models, and how disturbances grow", "", std::move(content),
-      "Impacts make every error grow. What a disturbance of the start comes to says how much of "
-      "a difference is the motion's own doing."};
+  return {"difference", "Difference of the models and amplification of disturbances", "",
+          std::move(content),
+          "Impacts amplify every error. The amplification of a disturbance of the initial state "
+          "shows how much of a difference is caused by the motion itself."};
 }
 
 std::optional<Figure> effort_figure(const SimulationResult& r) {
@@ -140,7 +140,7 @@ std::optional<Figure> effort_figure(const SimulationResult& r) {
   if (content.series.empty()) return std::nullopt;
   return Figure{"effort", "Speed against error", "", std::move(content),
                 "Analytic: against its tightest run. Multibody: against the analytic model. Errors "
-                "within the judged time."};
+                "within the compared time."};
 }
 
 // What both models need for the wanted error; "" where one of them is not there.
@@ -157,28 +157,23 @@ std::string race(const SimulationResult& r) {
 report::Section difference_section(const SimulationResult& r) {
   report::Section section;
   section.title = "Difference of the two trajectories";
-  section.text =
-      r.choice.steady
-          ? "Over one turn, at equal shares of either model's own period."
-          : "At equal times, and at equal shaft angles: there the analytic model is asked when its "
-            "shaft is where Simbody's is. Allowed is the wanted error times the growth of a "
-            "disturbance until then.";
+  section.text = r.choice.steady
+                     ? "Over one turn, at equal shares of either model's own period."
+                     : "At equal times, and at equal shaft angles: the analytic model is evaluated "
+                       "when its shaft has the angle of Simbody's shaft. The tolerance is the "
+                       "wanted error times the amplification of a disturbance until then.";
   section.facts = {
       {"speed of the shaft, of its largest", fmt::format("{:.1e}", r.speed_difference)}};
   if (compliant(r))
     section.facts.emplace_back("lag theta - psi", fmt::format("{:.1e} rad", r.lag_difference));
   if (!r.choice.steady) {
-    section.facts.emplace_back("judged until", fmt::format("{:.6g} s", r.judged_until_s));
-    section.facts.emplace_back("growth of a disturbance until the end",
+    section.facts.emplace_back("compared until", fmt::format("{:.6g} s", r.judged_until_s));
+    section.facts.emplace_back("amplification of a disturbance until the end",
                                fmt::format("{:.3g}", r.growth.back()));
   }
-  section.table.columns = {"group",
-                           "unit",
-                           "peak",
-                           "in time, of peak",
-                           "at, s",
-                           "over the angle, of peak",
-                           "of what is allowed"};
+  section.table.columns = {
+      "group",           "unit", "peak", "in time, of peak", "at, s", "over the angle, of peak",
+      "of the tolerance"};
   if (is_computed(r.integration_change))
     section.facts.emplace_back(
         "change at a tolerance ten times looser, of peak",
@@ -193,8 +188,8 @@ report::Section work_section(const SimulationResult& r) {
   report::Section section;
   section.title = "Work and drift";
   section.text =
-      "Work of all loads and of the drive, integrated along, against the energy gained. What is "
-      "left over was made by integration or constraints.";
+      "Work of all loads and of the drive, integrated with the motion, against the change of "
+      "energy. The residual is an error of integration or constraints.";
   section.table.columns = {"quantity"};
   std::vector<std::vector<Cell>> rows = {{std::string("work of loads, J")},
                                          {std::string("work of the drive, J")},
@@ -224,15 +219,13 @@ report::Section energy_section(const SimulationResult& r) {
   report::Section section;
   section.title = "Energy from the drive to the load";
   section.text =
-      "What came in, what was stored, where the rest went. Friction of pistons, block and shaft is "
-      "what the loads did less the work of the pressures, weight (nothing over a turn) and the "
-      "torque's own share (38), which feeds in where the torque drives backwards, among them; the "
-      "oil's own are integrated place by place. Pistons do on the oil what the pressures do on "
-      "them, which the models find from "
-      "their own velocities and the oil from the volumes of its chambers. The work of the drive is "
-      "that of the torque on the shaft, or of the motor where there is one: damping in its "
-      "coupling "
-      "is then among the losses.";
+      "Energy supplied, stored and dissipated. Friction of pistons, block and shaft is what the "
+      "loads did less the work of the pressures, weight (nothing over a turn) and the torque's own "
+      "share (38), which feeds in where the torque drives backwards, among them; the oil's own are "
+      "integrated place by place. Pistons do on the oil what the pressures do on them, which the "
+      "models find from their own velocities and the oil from the volumes of its chambers. The "
+      "work of the drive is that of the torque on the shaft, or of the motor where there is one: "
+      "damping in its coupling is then among the losses.";
   section.table.columns = {"energy, J", "use"};
   std::vector<std::vector<Cell>> rows;
   const auto put = [&](std::size_t row, const std::string& name, const char* use, double value) {
@@ -257,8 +250,8 @@ report::Section energy_section(const SimulationResult& r) {
         put(row++, e.place.name, hydraulics::name_of(e.place.use), e.energy);
     put(row++, "left over: mechanics", "must vanish", t.work_residual);
     put(row++, "left over: oil", "must vanish", oil.energy_residual);
-    put(row++, "left over: between pistons and oil", "must vanish", oil.exchange_residual);
-    put(row++, "mass of the oil left over, kg", "must vanish", oil.mass_residual);
+    put(row++, "residual between pistons and oil", "must vanish", oil.exchange_residual);
+    put(row++, "residual of the mass of the oil, kg", "must vanish", oil.mass_residual);
   }
   section.table.rows = std::move(rows);
   return section;
@@ -315,9 +308,9 @@ report::Section periodic_section(const SimulationResult& r) {
   report::Section section;
   section.title = "Periodic motion and its stability";
   section.text =
-      "The motion repeats itself after every N-th of a turn, pistons numbered again. Of a small "
-      "disturbance each Floquet multiplier's share is left after that time; below 1 it dies out. "
-      "The decay time is that in which it falls to 1/e.";
+      "The motion is periodic with an N-th of a turn, with the pistons renumbered. A Floquet "
+      "multiplier is the factor of a small disturbance over this period; below 1 it decays. The "
+      "decay time is that in which it falls to 1/e.";
   for (const Model model : kModels) {
     const auto& motion = r.periodic[static_cast<int>(model)];
     if (!motion) continue;
@@ -351,9 +344,8 @@ report::Section teeth_section(const SimulationResult& r) {
                                fmt::format("{:.4g} %", 100 * run->record.share_out_of_contact));
   if (r.analytic && r.multibody) {
     const EventMatch& e = r.events;
-    section.facts.emplace_back(
-        "touches", fmt::format("analytic {}, multibody {}; {} belong together", e.touches[0],
-                               e.touches[1], e.matched));
+    section.facts.emplace_back("touches", fmt::format("analytic {}, multibody {}; {} are matched",
+                                                      e.touches[0], e.touches[1], e.matched));
     section.facts.emplace_back("their largest difference in time",
                                fmt::format("{:.1e} s", e.time_s));
     section.facts.emplace_back("their largest difference of impulse, of the largest impulse",
@@ -365,8 +357,7 @@ report::Section teeth_section(const SimulationResult& r) {
   }
   const auto [name, run] = runs_of(r).front();
   section.text = fmt::format(
-      "Touches of the {} model with the speeds before them and the impulse until the flanks "
-      "leave{}.",
+      "Contacts of the {} model with the speeds before them and the impulse until separation{}.",
       name,
       run->record.events.size() > 2 * kMaxTouches
           ? fmt::format("; the first {} of them", kMaxTouches)
@@ -387,7 +378,7 @@ report::Section effort_section(const SimulationResult& r) {
   report::Section section;
   section.title = "Speed against error";
   section.text =
-      "Largest error of any reaction, of its peak, in the judged time: of the analytic model "
+      "Largest error of any reaction, of its peak, in the compared time: of the analytic model "
       "against its tightest run, of Simbody against the analytic model.";
   for (const auto& [name, run] : runs_of(r))
     section.facts.emplace_back(name + ": chosen", run->record.choice);
@@ -426,16 +417,17 @@ std::vector<report::Warning> doubts_of(const SimulationResult& r) {
   std::vector<report::Warning> warnings;
   const double atmosphere = the_case.hydraulics->atmosphere / kPascalPerBar;
   if (lowest < (kNearVacuum - 1) * atmosphere)
-    warnings.push_back({"course-vacuum",
-                        fmt::format("a chamber falls to {:.4g} bar gauge at {:.4g} s: it does not "
-                                    "fill, and what is computed there is the law of the air",
-                                    lowest, lowest_at)});
+    warnings.push_back(
+        {"course-vacuum",
+         fmt::format("a chamber falls to {:.4g} bar gauge at {:.4g} s: it is not filled "
+                     "completely, and its pressure follows from the law of the air",
+                     lowest, lowest_at)});
   const double usual = std::abs(the_case.operation.speed_rpm);
   if (usual > 0 && std::abs(fastest) > kOverspeed * usual)
     warnings.push_back(
         {"course-overspeed",
          fmt::format("the shaft gets to {:.5g} rpm at {:.4g} s, more than {:g} times the speed of "
-                     "[operation]: is there a torque without an inertia or a load?",
+                     "[operation]: is an inertia or a load missing?",
                      fastest, fastest_at, kOverspeed)});
   return warnings;
 }
@@ -456,11 +448,11 @@ void warn_of_further_pairs(const SimulationResult& r, std::vector<report::Warnin
   if (rows == 0) return;
   warnings.push_back(
       {"further pairs of teeth touch",
-       fmt::format("in {:.3g} % of the rows teeth are pressed together by more than {:.3g} um, at "
-                   "most {:.3g} um: three pairs of each flank are looked at; a fourth would carry "
-                   "a part of the force.",
-                   100.0 * static_cast<double>(rows) / static_cast<double>(run.teeth.size()),
-                   1e6 * reach, 1e6 * worst)});
+       fmt::format(
+           "in {:.3g} % of the rows the approach of the teeth exceeds {:.3g} um, maximum {:.3g} "
+           "um: three pairs of each flank are modelled; a fourth would carry part of the force.",
+           100.0 * static_cast<double>(rows) / static_cast<double>(run.teeth.size()), 1e6 * reach,
+           1e6 * worst)});
 }
 
 std::vector<report::Warning> warnings_of(const SimulationResult& r) {
@@ -547,13 +539,12 @@ std::vector<std::string> answers_of(const SimulationResult& r) {
                     a.delivery->highest_bar, milliseconds(a.delivery->highest_s),
                     a.delivery->highest_bar - a.delivery->end_bar, a.delivery->end_bar));
   if (a.beyond_plate)
-    answers.push_back(fmt::format(
-        "Not a motion of a pump in {:.3g} % of the rows: the film force acts up to {:.3g} mm from "
-        "the block's axis (at {}), beyond the plate's {:.3g} mm. The block would tilt there: Fh, "
-        "Th "
-        "and Rcn do not hold.",
-        100 * a.beyond_plate->share, a.beyond_plate->largest_mm,
-        milliseconds(a.beyond_plate->largest_s), a.beyond_plate->plate_mm));
+    answers.push_back(
+        fmt::format("Not a possible motion of a pump in {:.3g} % of the rows: the film force acts "
+                    "up to {:.3g} mm from the block's axis (at {}), outside the plate radius of "
+                    "{:.3g} mm. The block would tilt there: Fh, Th and Rcn are not valid.",
+                    100 * a.beyond_plate->share, a.beyond_plate->largest_mm,
+                    milliseconds(a.beyond_plate->largest_s), a.beyond_plate->plate_mm));
   return answers;
 }
 
@@ -584,16 +575,16 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
             "(docs/limits.md)."
       : r.oil_follows || r.choice.steady
           ? "Two derivations of the mechanics, coupled to the same oil and integrated by the same "
-            "method. Agreement says that both follow the same description; the error of the "
-            "integration is that of another tolerance, the oil's are its balances; whether a pump "
-            "does so is another question (docs/limits.md)."
+            "method. Agreement verifies that both solve the same equations. The integration error "
+            "is estimated by another tolerance, that of the oil by its balances. Whether a pump "
+            "behaves like this is validation (docs/limits.md)."
       : r.has_teeth() || r.choice.unit
-          ? "Two derivations of the mechanics, integrated by the same method. Agreement says that "
-            "both follow the same description; the error of the integration is that of another "
-            "tolerance; whether a pump does so is another question (docs/limits.md)."
+          ? "Two derivations of the mechanics, integrated by the same method. Agreement verifies "
+            "that both solve the same equations. The integration error is estimated by another "
+            "tolerance. Whether a pump behaves like this is validation (docs/limits.md)."
           : "Two derivations of the motion, each integrated by its own method, against each other "
-            "in time. Agreement says that both follow the same description; whether a pump does "
-            "is another question (docs/limits.md).";
+            "in time. Agreement verifies that both solve the same equations. Whether a pump "
+            "behaves like this is validation (docs/limits.md).";
   document.key_figures = key_figures_of(r);
   report::append(document.warnings, warnings_of(r));
   if (!r.choice.only) document.common = common_inputs(the_case, true, r.oil_follows);
@@ -682,7 +673,7 @@ std::string simulation_text(const SimulationResult& r) {
       text += fmt::format("{:<13} {:>11.5g} {:<5} {:>13.1e} {:>16} {:>12}\n", g.group, g.peak,
                           g.unit, g.in_time,
                           is_computed(g.over_angle) ? fmt::format("{:.1e}", g.over_angle) : "",
-                          g.judged ? fmt::format("{:.2g}", g.of_allowed) : "not judged");
+                          g.judged ? fmt::format("{:.2g}", g.of_allowed) : "not compared");
     text += "\n";
   }
   for (const auto& [name, run] : runs_of(r)) {

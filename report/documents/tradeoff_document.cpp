@@ -38,7 +38,7 @@ std::vector<std::string> recommendations(const std::vector<TradeoffRun>& runs) {
   for (int digits = 2; digits <= 10; ++digits) {
     const TradeoffRun* run = fastest_within(runs, std::pow(10.0, -digits));
     if (run == nullptr) {
-      lines.push_back(fmt::format("For 1e-{} none of the integrated runs is good enough.", digits));
+      lines.push_back(fmt::format("For 1e-{} no integrated run is accurate enough.", digits));
       break;
     }
     const std::string text =
@@ -55,14 +55,15 @@ std::vector<std::string> recommendations(const std::vector<TradeoffRun>& runs) {
   for (const TradeoffRun& run : runs)
     if (run.done() && run.method == "driven")
       lines.push_back(fmt::format(
-          "Without integrating, the driven scene \"{}\" takes {} a turn and is right to {:.0e}.",
+          "Without integrating, the driven scene \"{}\" takes {} a turn and is accurate to {:.0e}.",
           run.variant, time_text(run.seconds_per_turn), run.error.worst));
   for (const TradeoffRun& run : runs)
     if (run.model == "analytic" &&
         (run.method == "scalar" || &run == &runs.back() || (&run)[1].method != "batch"))
-      lines.push_back(fmt::format("The closed form, {}{}, takes {} a turn and is right to {:.0e}.",
-                                  run.method, run.variant.empty() ? "" : " (" + run.variant + ")",
-                                  time_text(run.seconds_per_turn), run.error.worst));
+      lines.push_back(
+          fmt::format("The closed form, {}{}, takes {} a turn and is accurate to {:.0e}.",
+                      run.method, run.variant.empty() ? "" : " (" + run.variant + ")",
+                      time_text(run.seconds_per_turn), run.error.worst));
   return lines;
 }
 
@@ -226,8 +227,8 @@ report::Figure figure_of(const TradeoffStudy::Pressure& pressure, bool by_accura
       "",
       report::ScatterFigure{std::move(x), {"achieved error, of peak", "", true}, std::move(series)},
       by_accuracy ? ""
-                  : "Driven and analytic runs have no error to trade: what they show is "
-                    "round-off. Integrated runs have a front of their own."};
+                  : "Errors of driven and analytic runs are round-off. Integrated runs have a "
+                    "front of their own."};
 }
 
 // By pressure: what is fastest for a coarse and for a fine error, and what needs no integration.
@@ -272,7 +273,7 @@ std::string headline_of(const TradeoffStudy& study) {
 
 report::Summary summary_of(const TradeoffStudy& study) {
   report::Summary summary{
-      "What a given error costs, and the fastest that is good enough. Times are of this machine; "
+      "Time needed for a given error, and the fastest sufficient run. Times are of this machine; "
       "compare them within this report only.",
       {}};
   for (const auto& pressure : study.pressures)

@@ -335,7 +335,7 @@ void explain_by(study::Outcome& outcome, const study::PartProgress& progress_of,
     if (analytic_differs)
       found = Search(outcome, case_of(), progress_of).find();
     else
-      found.reason = "the analytic model agrees wherever it was compared.";
+      found.reason = "the analytic model agrees in all compared channels.";
   } catch (const Interrupted&) {
     throw;
   } catch (const std::exception& error) {

@@ -301,7 +301,7 @@ DataModel::DataModel(Case base, IdentificationData data, bool kernel) {
   }
   if (std::none_of(all.data.begin(), all.data.end(),
                    [](const Datum& d) { return d.use == Use::fitted; }))
-    throw InputError("identify: the data have nothing that unknowns could be fitted to");
+    throw InputError("identify: the data contain nothing to which unknowns can be fitted");
   if (kernel) made->use_kernel();
   implementation_ = std::move(made);
 }
@@ -477,7 +477,7 @@ Identification identify(const DataModel& model, const IdentifyOptions& options,
       least_squares(model.problem(), starts, {.most_iterations = 60, .enough = 1e-3},
                     options.threads, progress_of("fit"));
   if (fits.empty())
-    throw ComputationError("identify: no start between the bounds makes a pump that can be run");
+    throw ComputationError("identify: no start between the bounds is a feasible pump");
   result.fit = moved_least(model, fits[nearest_of_best(model, fits)]);
   result.minima = minima_of(fits);
   result.numbers = numbers;

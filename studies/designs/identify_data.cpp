@@ -61,7 +61,7 @@ void check_bounds(const Unknown& unknown) {
   if (!(unknown.low < unknown.high))
     throw InputError(unknown.name() + ": the lower bound must be below the upper one");
   if (unknown.variable.discrete())
-    throw InputError(unknown.name() + ": has no values in between: it cannot be identified");
+    throw InputError(unknown.name() + ": is not continuous: it cannot be identified");
 }
 
 Unknown read_unknown(TableReader in, const Case& base, const IdentificationData& data) {
@@ -161,7 +161,7 @@ std::vector<Datum> read_curves(TableReader in, const fs::path& folder, const Cas
 std::string unfit(const compare::PublishedNumber& n) {
   if (!n.not_comparable.empty()) return n.not_comparable;
   if (n.repeats) return "says what another row says";
-  if (!n.study.empty()) return "judged by the study " + n.study;
+  if (!n.study.empty()) return "compared by the study " + n.study;
   if (n.measure == compare::Measure::sign_changes || n.measure == compare::Measure::main_order)
     return "a count: it does not change with small changes of a parameter";
   return "";

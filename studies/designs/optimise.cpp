@@ -123,7 +123,7 @@ std::pair<Output, OptimisePlan::Taken> taken_of(const std::string& text, Optimis
         !(*row <= static_cast<double>(rows)))
       throw InputError("output " + text + ": " + text.substr(at) +
                        (plan.conditions.file.empty()
-                            ? " names a row of --conditions, and there are none"
+                            ? " names a row of --conditions, which is not given"
                             : " must be a row of " + plan.conditions.file.string() + ", 1 to " +
                                   std::to_string(rows)));
     taken.row = static_cast<std::size_t>(*row) - 1;
@@ -185,7 +185,7 @@ OptimiseRequest read_optimise_request(const std::filesystem::path& file) {
 
 OptimisePlan optimise_plan(const OptimiseRequest& request, const Case& base) {
   if (request.minimise.empty() && request.maximise.empty())
-    throw InputError("optimise: name what is sought, as in --minimise peak:Rb1");
+    throw InputError("optimise: name an objective, as in --minimise peak:Rb1");
   OptimisePlan plan;
   plan.search = request.search;
   plan.samples = request.samples;
@@ -400,9 +400,9 @@ struct Optimiser::Implementation {
     std::string text;
     for (const Constraint& c : plan.constraints)
       if (const double over = beyond(c, raw); !(over <= 0))
-        text +=
-            fmt::format("{}{}: {}", text.empty() ? "" : "; ", plan.text(c),
-                        std::isnan(over) ? "has no value" : fmt::format("beyond by {:.4g}", over));
+        text += fmt::format(
+            "{}{}: {}", text.empty() ? "" : "; ", plan.text(c),
+            std::isnan(over) ? "has no value" : fmt::format("exceeded by {:.4g}", over));
     return text;
   }
   // Costs and constraints of a design as the search wants them.

@@ -177,7 +177,7 @@ constexpr ValidityEntry kValidity[] = {
     {"film", "N", "film force (limit: Fh <= 0)"},
     {"point", "mm", "distance of the film force from z2 (limit: r4 of the port plate)"},
     {"thrust", "N", "axial force of the tapered bearing (limit: Rb1_z1 >= 0)"},
-    {"friction", "W", "power that friction feeds in (limit: 0)"},
+    {"friction", "W", "power that friction adds (limit: 0)"},
     {"ring", "W", "power of the bore forces on the play (limit: 0)"},
     {"reach", "um", "approach of the teeth (limit: where a further pair would touch)"}};
 
@@ -230,8 +230,7 @@ std::vector<Output> single_outputs(const Case& base) {
       all.back().excess = true;
     }
     add(Source::timing, "timing.", "warnings", "",
-        "number of verdicts on the timing of the ports beyond their limits, without a stated "
-        "reason");
+        "number of port timing quantities that exceed their limits without a stated reason");
   }
   if (base.drive)
     for (const MotionEntry& e : kMotion)
@@ -262,7 +261,7 @@ std::string lacking(const std::string& name, const Case& base) {
 
 [[noreturn]] void unknown(const std::string& name, const Case& base) {
   const auto names = output_names(base);
-  throw InputError("output " + name + ": there is none of this name" +
+  throw InputError("output " + name + ": unknown name" +
                    suggestion(name, {names.begin(), names.end()}, "listed by bentaxis outputs"));
 }
 

@@ -443,7 +443,7 @@ void find_by_differences(Sensitivities& s, const Evaluator& evaluator, std::size
     return found.values;
   };
   double step = first_step(s.variables[v], s.base, s.at[v]);
-  if (step == 0) reason = "stands on a bound of its range";
+  if (step == 0) reason = "is at a bound of its range";
   for (int i = 0; step > 0; ++i, step /= 2) {
     reason.clear();
     values(s.at[v] + step);
@@ -485,7 +485,7 @@ Sensitivities begin(const Case& base, const std::vector<Variable>& variables,
   s.outputs = outputs;
   for (const Variable& variable : variables) {
     if (variable.discrete())
-      throw InputError(variable.name() + ": is no continuous number: it has no derivative");
+      throw InputError(variable.name() + ": is not a continuous number: it has no derivative");
     s.at.push_back(variable.value(base));
   }
   std::vector<Output> all = outputs;

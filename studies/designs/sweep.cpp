@@ -156,7 +156,7 @@ struct Sweep::Implementation {
     if (plan.check_share > 0 && std::all_of(scales.begin(), scales.end(), [](const Scale& scale) {
           return scale.kind == ScaleKind::none;
         }))
-      throw InputError("--check: none of the outputs is computed by both models on their own");
+      throw InputError("--check: none of the outputs is computed independently by both models");
   }
 
   // At least one of all designs is: the share may be less than one of them.

@@ -343,7 +343,7 @@ std::pair<Sweep, SweepRecord> sweep_in(const fs::path& folder) {
   SweepRecord record = record_of(sweep, found->program);
   if (record.identity != found->identity)
     throw InputError(folder.string() + ": " + kCaseFile + " or " + kPlanFile +
-                     " is not what its blocks were computed from");
+                     " differs from the case that its blocks were computed from");
   return {std::move(sweep), std::move(record)};
 }
 

@@ -153,9 +153,9 @@ SampledOutputs without_curves(const SampledOutputs& sampled, std::size_t outputs
 void check(const SampledOutputs& sampled, const UncertaintyOptions& options) {
   const std::size_t without = sampled.infeasible.size();
   if (2 * without > options.samples || options.samples - without < fewest_samples(options.level))
-    throw ComputationError(std::to_string(without) + " of " + std::to_string(options.samples) +
-                           " samples are no pump that can be computed; the first: " +
-                           sampled.infeasible.front().second);
+    throw ComputationError(
+        std::to_string(without) + " of " + std::to_string(options.samples) +
+        " samples are infeasible pumps; the first: " + sampled.infeasible.front().second);
 }
 
 }  // namespace
