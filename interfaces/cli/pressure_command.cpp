@@ -1,6 +1,7 @@
 #include <memory>
 #include <optional>
 
+#include "bentaxis/designs/spaced_values.h"
 #include "bentaxis/designs/timing_advice_section.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/csv.h"
