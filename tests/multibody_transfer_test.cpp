@@ -24,7 +24,8 @@ namespace {
 using multibody::Method;
 
 std::filesystem::path transfer_file(const std::string& name) {
-  return std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" / "transfers" / name;
+  const std::string set = name.rfind("pistons_seven_free", 0) == 0 ? "motion" : "transfers";
+  return std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" / set / name;
 }
 
 // Columns of a motion, not of a ChannelLayout.

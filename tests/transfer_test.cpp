@@ -24,7 +24,8 @@ using analytic::Model;
 using testing::HasSubstr;
 
 std::filesystem::path folder_of(const std::string& name) {
-  return std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" / "transfers" / name;
+  const std::string set = name == "pistons_seven_free" ? "motion" : "transfers";
+  return std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" / set / name;
 }
 Case transfer_case(const std::string& name, const std::vector<std::string>& changes = {}) {
   return read_case(folder_of(name) / "case.toml", changes);

@@ -252,7 +252,8 @@ compare::Options Maker::comparison_options() const {
 // of the film force where there is none (53).
 bool Maker::may_be_missing(const Channel& channel, std::size_t row) const {
   const ComparisonResult& r = result_;
-  if (!computes({}, r.first.the_case.analytic, channel) ||
+  if (!exists_at_constant_speed(r.first.the_case.pump, channel) ||
+      !computes({}, r.first.the_case.analytic, channel) ||
       !computes(multibody_run(0), r.second.the_case.multibody, channel))
     return true;
   if (channel.quantity != "xh" && channel.quantity != "yh") return false;
