@@ -20,8 +20,7 @@ std::string bias_text(const DerivedDisplacement& derived) {
 }
 
 std::string place_of(const FlowPoint& point) {
-  return fmt::format("{:.6g} rpm and {:.6g} bar", point.speed / kRpm,
-                     point.delivery / kPascalPerBar);
+  return fmt::format("{:.6g} rpm and {:.6g} bar", speed_rpm(point), delivery_bar(point));
 }
 
 // Points above 100 %, by speed: "1500 rpm at 13.75, 55 bar; 1200 rpm at 13.75 bar".
@@ -34,8 +33,8 @@ std::string places_above(const std::vector<FlowPoint>& points, const DerivedDisp
     if (same)
       text.replace(text.size() - 4, 4, ", ");
     else
-      text += fmt::format("{}{:.6g} rpm at ", text.empty() ? "" : "; ", points[i].speed / kRpm);
-    text += fmt::format("{:.6g} bar", points[i].delivery / kPascalPerBar);
+      text += fmt::format("{}{:.6g} rpm at ", text.empty() ? "" : "; ", speed_rpm(points[i]));
+    text += fmt::format("{:.6g} bar", delivery_bar(points[i]));
   }
   return text;
 }
@@ -69,7 +68,7 @@ report::Section methods_section(const DisplacementStudy& study) {
         report::append(rows.back(), {derived.volume / kCubicCentimetre, 100 * derived.bias,
                                      static_cast<long>(derived.above_one),
                                      percent(derived.efficiency[derived.highest]),
-                                     highest.speed / kRpm, highest.delivery / kPascalPerBar});
+                                     speed_rpm(highest), delivery_bar(highest)});
       } else {
         section.facts.emplace_back(std::string(name_of(derived.method)) + ", " + meter.meter,
                                    "not determined: " + derived.reason);
@@ -97,7 +96,7 @@ report::Section points_section(const DisplacementStudy& study) {
   for (std::size_t i = 0; i < meter.points.size(); ++i) {
     const FlowPoint& point = meter.points[i];
     std::vector<report::Cell> row = {
-        point.speed / kRpm, point.delivery / kPascalPerBar, point.flow / kLitrePerMinute,
+        speed_rpm(point), delivery_bar(point), point.flow / kLitrePerMinute,
         percent(volumetric_efficiency(study.geometric, point, study.motor))};
     for (const DerivedDisplacement& derived : meter.derived)
       row.push_back(derived.efficiency.empty() ? report::Cell() : percent(derived.efficiency[i]));
@@ -115,7 +114,7 @@ report::Figure flow_figure(const DisplacementStudy& study) {
       {"pressure difference", "bar", false, 0.0}, {"flow at delivery pressure / speed", "cm3"}, {}};
   double greatest = 0;
   for (const FlowPoint& point : meter.points) {
-    const std::string label = fmt::format("{:.6g} rpm", point.speed / kRpm);
+    const std::string label = fmt::format("{:.6g} rpm", speed_rpm(point));
     if (figure.series.empty() || figure.series.back().label != label)
       figure.series.push_back({label, {}, {}});
     const double bar = point.difference / kPascalPerBar;

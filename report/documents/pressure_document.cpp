@@ -7,6 +7,7 @@
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/efficiency.h"
 #include "bentaxis/study/failed_points.h"
@@ -214,7 +215,8 @@ std::string pressure_text(const OperatingPoint& point, const hydraulics::PowerBu
   const auto add = [&](const std::string& name, double value, const std::string& unit) {
     text += fmt::format("{:<42} {:>12.6g} {}\n", name, value, unit);
   };
-  for (const auto& line : hydraulics::lines(point.state())) add(line.name, line.value, line.unit);
+  for (const auto& line : hydraulics::lines(point.state()))
+    if (is_computed(line.value)) add(line.name, line.value, line.unit);
   for (const hydraulics::Place place : point.state().places)
     add(fmt::format("power, {}", hydraulics::name_of(place)), power[place], "W");
   add("residual power, of the power of the pistons",

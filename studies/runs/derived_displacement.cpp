@@ -1,5 +1,7 @@
 #include "bentaxis/study/derived_displacement.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -134,6 +136,11 @@ MeteredDisplacement metered(const std::string& meter, std::vector<FlowPoint> poi
   return found;
 }
 
+// 12 digits of a number.
+double without_round_off(double value) {
+  return number_in(fmt::format("{:.12g}", value)).value_or(value);
+}
+
 std::vector<double> steps(double from, double to, int count) {
   std::vector<double> values;
   for (int i = 0; i < count; ++i) values.push_back(from + (to - from) * i / (count - 1));
@@ -141,6 +148,13 @@ std::vector<double> steps(double from, double to, int count) {
 }
 
 }  // namespace
+
+double speed_rpm(const FlowPoint& point) {
+  return without_round_off(point.speed * kSecondsPerMinute);
+}
+double delivery_bar(const FlowPoint& point) {
+  return without_round_off(point.delivery / kPascalPerBar);
+}
 
 const char* name_of(DisplacementMethod method) {
   switch (method) {
@@ -259,9 +273,8 @@ std::string to_csv(const DisplacementStudy& study) {
     for (const DerivedDisplacement& derived : at_delivery.derived)
       efficiency.push_back(derived.efficiency.empty() ? not_computed()
                                                       : 100 * derived.efficiency[i]);
-    csv.row(point.speed * kSecondsPerMinute, point.delivery / kPascalPerBar,
-            point.difference / kPascalPerBar, point.flow / kLitrePerMinute,
-            study.meters.at(1).points[i].flow / kLitrePerMinute,
+    csv.row(speed_rpm(point), delivery_bar(point), point.difference / kPascalPerBar,
+            point.flow / kLitrePerMinute, study.meters.at(1).points[i].flow / kLitrePerMinute,
             100 * volumetric_efficiency(study.geometric, point, study.motor), efficiency, "");
   }
   for (const FailedPoint& failed : study.failed)

@@ -20,6 +20,11 @@ struct FlowPoint {
   double flow = 0;        ///< m3/s
 };
 
+/// Speed (rpm) and delivery pressure (bar) of a point as they were asked for: without the round-off
+/// of the conversion to SI.
+double speed_rpm(const FlowPoint& point);
+double delivery_bar(const FlowPoint& point);
+
 /// A way to derive the displacement. Each is a least-squares fit of the flow q at speeds n and
 /// pressure differences p:
 ///   iso_8426            q/n at p = 0, by a line over p, at one speed: the highest
