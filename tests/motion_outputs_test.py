@@ -31,7 +31,7 @@ class MotionOutputsTest(ProgramTest):
         """What simulate says: numbers of its answers and of its curves."""
         self.run_program("simulate", case, *SHORT, "--model", model, "--out", "simulated")
         answers = " ".join(json.loads((self.folder / "simulated" / "report.json").read_text())["verdict"]["answers"])
-        return answers, self.rows("simulated", f"{model}.csv")
+        return answers, self.rows("simulated", f"simulation_{model}.csv")
 
     def swept(self, case, names, *options):
         self.run_program("sweep", case, *SHORT, "--vary", "shaft.mass_kg=2", "--output", ",".join(names), *options, "--out", "swept")
@@ -43,10 +43,12 @@ class MotionOutputsTest(ProgramTest):
         found = self.swept(case, names, "--model", model)
         torque = [float(row["Td_z1_Nm"]) for row in curves]
         largest = max(torque, key=abs)
-        self.assertEqual(found["motion.peak_torque_Nm"], largest)
+        # Simbody's run is the same to its last digit but one from process to process, the analytic one to the last.
+        same = self.assertEqual if model == "analytic" else lambda a, b: self.assertAlmostEqual(a / b, 1, 12)
+        same(found["motion.peak_torque_Nm"], largest)
         self.assertEqual(found["motion.peak_torque_s"], float(curves[torque.index(largest)]["time_s"]))
-        speed = [float(row["shaft_speed_rpm"]) for row in curves]
-        self.assertEqual(found["motion.last_rpm"], speed[-1])
+        speed = [float(row["shaft_rpm"]) for row in curves]
+        same(found["motion.last_rpm"], speed[-1])
         # As the answers print them.
         self.assertIn(f"at most {largest:.4g} Nm at", answers)
         self.assertIn(f"work of the drive {found['motion.drive_work_J'] / 1e3:.4g} kJ", answers)
@@ -83,7 +85,7 @@ class MotionOutputsTest(ProgramTest):
 
     def test_sensitivity_and_optimise_take_them(self):
         case = self.case("bap63_motor_start")
-        self.run_program("sensitivity", case, *SHORT, "--output", "motion.drive_work_J", "--parameters", "drive.rotor_inertia_kg_m2", "--out", "s")
+        self.run_program("sensitivity", case, *SHORT, "--output", "motion.drive_work_J", "--parameter", "drive.rotor_inertia_kg_m2", "--out", "s")
         (row,) = self.rows("s", "sensitivity.csv")
         self.assertGreater(float(row["derivative"]), 0)  # a heavier rotor takes more energy to the same time
         self.run_program("optimise", case, *SHORT, "--vary", "drive.rotor_inertia_kg_m2=0.05:0.3", "--minimise", "motion.reached_s", "--subject-to",
