@@ -243,12 +243,20 @@ values = "20:26"
         if mpirun is None or "MPI none" in subprocess.run([PROGRAM, "--version"], capture_output=True, text=True).stdout:
             self.skipTest("no MPI")
         environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-        options = [*FRONT[:-4], "--population", "160", "--generations", "3"]
-        done = subprocess.run([mpirun, "--oversubscribe", "-n", "2", *self.command(*options)],
-                              cwd=self.folder, env=environment, capture_output=True, text=True, timeout=SECONDS)
-        self.assertEqual(done.returncode, DONE, done.stderr)
-        self.run_program(*options, out=self.folder / "one")
-        self.assertEqual((self.out / "front.csv").read_bytes(), (self.folder / "one" / "front.csv").read_bytes())
+        # By the kernel of the closed form; by runs, whose designs of the gradients are kept one by one; with quantiles.
+        uncertain = self.folder / "case.toml"
+        uncertain.write_text(self.case.read_text() + '\n[uncertainty]\n"pump.bore_diameter_mm" = "normal(0.05)"\n')
+        small = ["--population", "16", "--generations", "1", "--restarts", "1"]
+        for name, options in (("front", [*FRONT[:-4], "--population", "160", "--generations", "3"]),
+                              ("runs", [*FRONT[:4], "--minimise", "rms:budget.Td_inertia", "--subject-to", "displacement_cm3 >= 50", *small]),
+                              ("quantiles", [*FRONT[:4], "--minimise", "q95:peak:Rb1", "--maximise", "q5:displacement_cm3", *small])):
+            with self.subTest(name):
+                one, two = (self.folder / f"{name}_{ranks}" for ranks in (1, 2))
+                done = subprocess.run([mpirun, "--oversubscribe", "-n", "2", *self.command(*options, case=uncertain, out=two)],
+                                      cwd=self.folder, env=environment, capture_output=True, text=True, timeout=SECONDS)
+                self.assertEqual(done.returncode, DONE, done.stderr)
+                self.run_program(*options, case=uncertain, out=one)
+                self.assertEqual((two / "front.csv").read_bytes(), (one / "front.csv").read_bytes())
 
 
 if __name__ == "__main__":
