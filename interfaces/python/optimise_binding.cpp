@@ -106,7 +106,7 @@ Optimisation optimise(const PythonCase& the_case, const Variations& vary, const 
   return found;
 }
 
-std::map<std::size_t, std::string> infeasible(const Optimisation& self) {
+std::map<std::size_t, std::string> infeasible_designs(const Optimisation& self) {
   std::map<std::size_t, std::string> reasons;
   for (const auto& [design, reason] : self.found->designs.infeasible)
     reasons.emplace(design, in_python(reason));
@@ -124,7 +124,7 @@ PythonCase case_of(const Optimisation& self, std::size_t design) {
   return {case_text(designs::case_of(*self.found, design)), self.file, {}};
 }
 
-std::vector<fs::path> report(const Optimisation& self, const fs::path& folder) {
+std::vector<fs::path> report_optimisation(const Optimisation& self, const fs::path& folder) {
   const designs::Optimisation& found = *self.found;
   std::vector<cli::TextFile> files = designs::chosen_cases(found);
   files.emplace_back("front.csv", designs::front_csv(found));
@@ -152,7 +152,7 @@ void add_optimisation(py::module_& module) {
           "The best design of each objective and a balanced one; empty where no design keeps all "
           "constraints.")
       .def_property_readonly("front", &front, "Rows of the designs that no other beats.")
-      .def_property_readonly("infeasible", &infeasible,
+      .def_property_readonly("infeasible", &infeasible_designs,
                              "Why designs are not allowed or have no outputs, by their rows.")
       .def_property_readonly(
           "headline", [](const Optimisation& self) { return designs::headline(*self.found); },
@@ -170,7 +170,7 @@ void add_optimisation(py::module_& module) {
           "seconds", [](const Optimisation& self) { return self.found->designs.seconds; },
           "What the search took.")
       .def("case", &case_of, py::arg("design"), "The case of a row.")
-      .def("report", &report, py::arg("folder"),
+      .def("report", &report_optimisation, py::arg("folder"),
            "Writes report.html, report.json, front.csv, evaluations.csv and the chosen cases as "
            "the program does; returns their paths.");
   module.def(
