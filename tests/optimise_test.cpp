@@ -149,7 +149,8 @@ TEST(OptimiseTest, EndsOnAConstraint) {
   }
   EXPECT_GT(violating, 0U);
   EXPECT_EQ(found.designs.infeasible.size(), violating);
-  EXPECT_THAT(found.designs.infeasible[0].second, HasSubstr("displacement_cm3 >= 50 cm3: beyond"));
+  EXPECT_THAT(found.designs.infeasible[0].second,
+              HasSubstr("displacement_cm3 >= 50 cm3: exceeded"));
 }
 
 TEST(OptimiseTest, ChoosesTheEndsOfTheFrontAndItsMiddle) {
