@@ -229,7 +229,7 @@ TEST(DerivedDisplacementTest, FailedPointsAreNamedAndLeftOut) {
   for (const Method method : kDisplacementMethods)
     EXPECT_TRUE(is_computed(study.meters.at(kAtDelivery).by(method).volume)) << name_of(method);
   const std::string csv = to_csv(study);
-  EXPECT_THAT(csv, HasSubstr("out of reach"));
+  EXPECT_THAT(csv, HasSubstr("cannot be reached"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 10);
   EXPECT_THROW(displacement_study(the_case, {150}, {60, 100}), ComputationError);
   EXPECT_THROW(displacement_study(the_case, {150, 1200}, {20}), InputError);

@@ -86,7 +86,7 @@ class SeriesTest(ProgramTest):
         computed = [row for row in rows if not row["reason"]]
         self.assertEqual(len(computed), 10)
         self.assertNotIn("", [row["class"] for row in computed])
-        self.assertIn("out of reach", next(row["reason"] for row in rows if row["reason"]))
+        self.assertIn("cannot be reached", next(row["reason"] for row in rows if row["reason"]))
         self.assertIn("2 of 12 points could not be computed", result.err)
         self.assertIn("delivery_bar = 100, speed_rpm = 500, swept up", result.err)
         self.assertEqual(len(self.failed("report.json")), 2)

@@ -145,7 +145,7 @@ class ChannelComparison:
 
     @property
     def channel(self) -> Channel:
-        """Meaning of the parameter."""
+        """Description of the channel."""
 
     @property
     def verdict(self) -> str:
@@ -221,6 +221,18 @@ class Check:
     @property
     def holds(self) -> bool:
         """Whether it is within tolerance."""
+
+
+class ChosenDesign:
+    """A chosen design of the front."""
+
+    @property
+    def why(self) -> str:
+        """"least peak:Rb1", "balanced"."""
+
+    @property
+    def design(self) -> int:
+        """Row of the design."""
 
 
 class Comparison:
@@ -440,6 +452,42 @@ class Minimum:
     @property
     def starts(self) -> int:
         """Number of starts that ended there."""
+
+
+class Optimisation(Table):
+    """A table of all designs that a search evaluated: parameters that vary and outputs, in the order of the
+    evaluations."""
+
+    @property
+    def chosen(self) -> list[ChosenDesign]:
+        """The best design of each objective and a balanced one; empty where no design keeps all constraints."""
+
+    @property
+    def front(self) -> list[int]:
+        """Rows of the Pareto front."""
+
+    @property
+    def infeasible(self) -> dict[int, str]:
+        """Reasons why designs are infeasible or have no outputs, by row."""
+
+    @property
+    def headline(self) -> str:
+        """Summary in one line."""
+
+    @property
+    def answers(self) -> list[str]:
+        """The chosen designs and how sure they are, in sentences."""
+
+    @property
+    def seconds(self) -> float:
+        """What the search took."""
+
+    def case(self, design: int) -> Case:
+        """The case of a row."""
+
+    def report(self, folder: _Path) -> list[pathlib.Path]:
+        """Writes report.html, report.json, front.csv, evaluations.csv and the chosen cases as the program does;
+        returns their paths."""
 
 
 class Outcome:
@@ -712,7 +760,7 @@ class SweepCheck:
 
     @property
     def design(self) -> int:
-        """Its row."""
+        """Row of the design."""
 
     @property
     def own(self) -> list[float]:
@@ -800,7 +848,7 @@ def cases() -> dict[str, str]:
 def compare(case: Case, multibody: Optional[Mapping[str, _Value]] = None, *, analytic: Optional[Mapping[str, _Value]] = None, multibody_case: Optional[Case] = None, channels: Union[str, Sequence[str], None] = None, tolerance: Optional[float] = None) -> Comparison:
     """Runs both models over one turn and compares them. `multibody`, `analytic`: assumptions of a model that
     override the case, {"piston_friction": False, "gear": "imposed"}: the difference is then split by
-    assumption. `multibody_case`: another case for the multibody model. `channels`: only these."""
+    assumption. `multibody_case`: another case for the multibody model. `channels`: only these channels."""
 
 
 def data_folder(name: str = 'cases') -> str:
@@ -811,6 +859,13 @@ def identify(case: Case, data: Union[_Path, Sequence[_Path]], unknowns: Optional
     """Determines parameters from printed numbers, windows and records (docs/identification.md). `data`: a file
     or several. `unknowns`: further unknowns, minimum and maximum by name. `fit_only`: least squares only,
     without profiles, posterior and leave-one-out. Needs a build with Ceres."""
+
+
+def optimise(case: Case, vary: Mapping[str, Union[str, float, bool, Sequence[_Value], _Array]], minimise: Union[str, Sequence[str], None] = None, maximise: Union[str, Sequence[str], None] = None, subject_to: Union[str, Sequence[str], None] = None, *, outputs: Union[str, Sequence[str], None] = None, conditions: Optional[_Path] = None, population: int = 64, generations: int = 50, restarts: int = 2, seed: int = 1, refine: bool = True, samples: int = 100, comparison: str = 'fast', model: str = 'analytic', threads: int = 0) -> Optimisation:
+    """The best designs (docs/optimisation.md). `vary`: a range "25:42" or a list of values by parameter.
+    `minimise`, `maximise`: outputs, also quantiles under [uncertainty] as "q95:peak:Rb1", from `samples` of
+    it. `subject_to`: "peak:Rs <= 13000". `conditions`: a file of operating points. `comparison`: random and
+    grid search beside it, "fast", "yes" or "no"."""
 
 
 def parameter(key: str) -> Parameter:
