@@ -352,7 +352,7 @@ class UsageTest(ProgramTest):
             ([], ["states.csv"]),
             ([self.MOTION.replace("psi_rpm", "psi_rmp"), good], ["states.csv:1", "psi_rmp", 'did you mean "psi_rpm"']),
             ([self.MOTION[:-len(",psi_rad_per_s2")], good[:-5]], ["states.csv:1", "psi_rad_per_s2", "missing"]),
-            ([self.MOTION + ",psi_deg", good + ",1"], ["states.csv:1", "psi_deg", "twice"]),
+            ([self.MOTION + ",psi_deg", good + ",1"], ["states.csv:1", "psi_deg", "duplicate"]),
             ([self.MOTION + ",p_2_bar", good + ",1"], ["states.csv:1", "p_1_bar", "missing"]),
             ([self.MOTION, good, good.replace("9.5", "9,5")], ["states.csv:3"]),
             ([self.MOTION, good, good.replace("9.5", "east")], ["states.csv:3", "psi_deg", "east"]),
@@ -1283,7 +1283,7 @@ class PressureTest(ProgramTest):
         figures = {f["id"]: f for f in json.loads((self.folder / "out/pressure.json").read_text())["figures"]}
         drawn = {s["label"]: s["values"] for s in figures["flow_curve"]["series"]}
         for label, values in (("in the suction port", flow), ("of the mean delivery pressure", at_delivery)):
-            for shown, value in zip(drawn.pop("to the load, at the density " + label), values, strict=True):
+            for shown, value in zip(drawn.pop("volume flow to the load, at the density " + label), values, strict=True):
                 self.assertAlmostEqual(shown / value, 1, 8)  # the page has nine digits
         self.assertEqual(drawn, {})
 
@@ -1333,7 +1333,7 @@ class PressureTest(ProgramTest):
 
     def test_refused(self):
         for changes, words in (
-                ({"operation.speed_rpm": 0.0}, ("speed_rpm", "standstill")),
+                ({"operation.speed_rpm": 0.0}, ("speed_rpm", "at rest")),
                 ({"operation.speed_rpm": -1500.0}, ("speed_rpm", "motoring")),
                 ({"pump.tilt_deg": 0.0}, ("tilt_deg", "stroke")),
                 ({"pressure.delivery_bar": -1.0}, ("delivery_bar", "[0,")),

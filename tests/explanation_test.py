@@ -194,7 +194,7 @@ class ExplanationTest(unittest.TestCase):
         self.case = REPO / "cases" / "bap63_teeth.toml"
         self.write("teeth", self.curves("piston.mass_kg=0.0927"))
         (sentence, rows), = self.explanations().values()
-        self.assertRegex(sentence, "^No parameter was looked for that explains the difference: .+")
+        self.assertRegex(sentence, "^No explanation was searched for: .+")
         self.assertEqual(rows, [])
 
     def test_wrong_parameters_are_named(self):

@@ -489,7 +489,7 @@ class Refusals(unittest.TestCase):
         self.refused(out="pump", says=".fmu")
         self.refused(out=".fmu", says=".fmu")
         (self.folder / "folder.fmu").mkdir()
-        self.refused(out="folder.fmu", says="is a folder")
+        self.refused(out="folder.fmu", says="is a directory")
 
     def test_options(self):
         self.refused("--fmi", "1", says="--fmi")

@@ -101,7 +101,7 @@ class FmuImportTest : public testing::Test {
 
 TEST_F(FmuImportTest, RefusesWhatIsNoUnitByName) {
   EXPECT_THAT(of(folder_ / "none.fmu"), EndsWith("none.fmu: does not exist"));
-  EXPECT_THAT(of(folder_), HasSubstr("is a folder"));
+  EXPECT_THAT(of(folder_), HasSubstr("is a directory"));
   std::ofstream(folder_ / "text.fmu") << "hello";
   EXPECT_THAT(of(folder_ / "text.fmu"), HasSubstr("not a zip archive"));
   EXPECT_THAT(of(Entries{{"readme.txt", "hello"}}), HasSubstr("it has no modelDescription.xml"));

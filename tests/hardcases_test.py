@@ -132,7 +132,7 @@ class WarningTest(Temporary):
                 lossy += bool(lost)
                 with self.subTest(case=case["name"], model=model["model"]):
                     said = PUMP.sub("", run("run", file, *options[model["model"]], "--out", self.folder).stderr)
-                    warned = set(re.findall(r"(\w+) is known to", said)) | set(re.findall(r"(\w+) \d\.\de-\d+", said))
+                    warned = set(re.findall(r"(\w+) is accurate to", said)) | set(re.findall(r"(\w+) \d\.\de-\d+", said))
                     self.assertLessEqual(lost, warned, said)
                     if sound:
                         self.assertEqual(said, "")

@@ -924,7 +924,7 @@ TEST_F(PortFile, FaultsOfATableAreNamed) {
   EXPECT_THAT(refusal_of(head + "0,0\n100,0\n200,0\n"), HasSubstr("must be > 0 somewhere"));
   EXPECT_THAT(refusal({"hydraulics.suction_opening_file=none.csv"}),
               HasSubstr("no such file: " + (folder_ / "none.csv").string()));
-  EXPECT_THAT(refusal({"hydraulics.suction_opening_file=."}), HasSubstr("is a folder"));
+  EXPECT_THAT(refusal({"hydraulics.suction_opening_file=."}), HasSubstr("is a directory"));
 }
 
 TEST_F(PortFile, ImpossiblePartsAreRefused) {

@@ -108,7 +108,7 @@ class IdentifyTest(ProgramTest):
             self.assertAlmostEqual(widths[name], 100 * width / peak, delta=1e-9 * widths[name], msg=name)
         least, most = min(widths, key=widths.get), max(widths, key=widths.get)
         self.assertIn(f"{widths[least]:.2g} % ({least}) .. {widths[most]:.2g} % ({most}) of peak", result.out)
-        self.assertRegex(result.out, rf"pump\.bore_diameter_mm +{float(row['identified']):.6g} mm")
+        self.assertRegex(result.out, rf"pump\.bore_diameter_mm = {float(row['identified']):.6g} mm")
         best = tables["Most useful further measurements"]
         gains = [m["all bands narrower by, %"] for m in best]
         self.assertEqual(gains, sorted(gains, reverse=True))
@@ -156,7 +156,7 @@ between = [38, 42]
 
     def test_a_refuted_fit(self):
         result = self.identify(self.rig(120), status=OUT_OF_TOLERANCE)
-        self.assertRegex(result.out, r"^the model does not fit the data: chi-square [\d.]+ with 5 degrees of freedom, p ")
+        self.assertRegex(result.out, r"(?m)^the model does not fit the data: chi-square [\d.]+ with 5 degrees of freedom, p ")
         self.assertRegex(result.out, r"largest residuals:\n  mean:Td \(\d000 rpm, \d00 bar\): -\d+\.\d sigma \(data ")
         self.assertRegex(result.out, r"improve the fit most: friction\.piston_coulomb_N \(1[12]\d\.?\d* N instead of 25\)")
         self.assertIn("withheld", result.out)
@@ -195,7 +195,7 @@ between = [38, 42]
 
     def test_a_fit_that_is_not_refuted(self):
         result = self.identify(self.rig(25), "--fit-only")
-        self.assertRegex(result.out, r"^fit: chi-square [\d.]+ with 5 degrees of freedom, p = 0\.\d+: not refuted; ")
+        self.assertRegex(result.out, r"(?m)^fit: chi-square [\d.]+ with 5 degrees of freedom, p = 0\.\d+: not refuted; ")
         report = json.loads((self.folder / "out" / "report.json").read_text())
         self.assertIs(report["verdict"]["agrees"], True)
         self.assertEqual(report["verdict"]["word"], "Not refuted")
@@ -205,7 +205,7 @@ between = [38, 42]
 
     def test_a_fit_without_degrees_of_freedom_is_not_tested(self):
         result = self.identify(DATA, "--fit-only")
-        self.assertRegex(result.out, "^no test of the fit: chi-square [^ ]+ with 0 degrees of freedom; ")
+        self.assertRegex(result.out, "(?m)^no test of the fit: chi-square [^ ]+ with 0 degrees of freedom; ")
         verdict = json.loads((self.folder / "out" / "report.json").read_text())["verdict"]
         self.assertEqual((verdict["agrees"], verdict["word"], verdict["fit"]["p_value"]), (None, "Not tested", None))
 

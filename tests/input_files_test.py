@@ -79,7 +79,7 @@ class KindTest(InputTest):
 
     def test_directory(self):
         (self.folder / "input.csv").mkdir()
-        self.try_all(self.folder / "input.csv", "folder")
+        self.try_all(self.folder / "input.csv", "directory")
 
     def test_too_large(self):
         with (self.folder / "input.csv").open("wb") as file:

@@ -327,7 +327,7 @@ class PaperFiguresTest(ProgramTest):
                 ('condition = "rated"\nangles', 'condition = "raced"\nangles', ("condition", "raced")),
                 ('channels = ["Rs_1_x2_N"]', 'channels = ["Rs_1_x9_N"]', ("Rs_1_x9_N",)),
                 ('over = "delivery_bar"', 'over = "delivery"', ("delivery",)),
-                ("number = 12\n", "number = 10\n", ("fig10", "twice")),
+                ("number = 12\n", "number = 10\n", ("fig10", "duplicate")),
                 ('file = "bap63_peak_hydraulic.toml"', 'file = "bap63_rated_hydraulic.toml"', ("peak load", "delivery_bar is 275")),
                 ("kind = \"curves\"", "kind = \"curve\"", ("kind",)),
                 ("angles = [280]", "angles = [360]", ("angles",))):

@@ -231,7 +231,7 @@ class NegativeControlTest(RegressTest):
                 line.pop(column)
         folder = self.copy_of("high_precision/bap63_rated")
         change_csv(folder / "reference.csv", change)
-        self.assert_mentions(self.regress("ref", status=OUT_OF_TOLERANCE), "incomplete", "Td_z1_Nm", "lacks")
+        self.assert_mentions(self.regress("ref", status=OUT_OF_TOLERANCE), "incomplete", "Td_z1_Nm", "does not have it")
 
     def test_curve_that_is_not_there(self):
         self.spoilt(lambda folder: (folder / "reference.csv").unlink(), BAD_INPUT, "reference.csv", "no such file")

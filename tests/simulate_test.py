@@ -290,7 +290,7 @@ class TrajectoryTest(SimulateTest):
             self.assertGreater(flank * (row[2] - row[3]), 0)  # they meet
             self.assertGreater(row[5], 0)
         count = len(touches["table"]["rows"])
-        self.assertEqual(dict(touches["facts"])["touches"], f"analytic {count}, multibody {count}; {count} belong together")
+        self.assertEqual(dict(touches["facts"])["touches"], f"analytic {count}, multibody {count}; {count} are matched")
         self.assertEqual(dict(self.section("Difference")["facts"])["compared until"], "0.002 s")
 
     def test_the_analytic_model_meets_the_stored_trajectories(self):

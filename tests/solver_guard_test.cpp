@@ -96,7 +96,7 @@ TEST(SolverGuard, MultipliersThatAreNoNumbersAreRefused) {
   EXPECT_TRUE(std::isnan(solved.estimated()));
   EXPECT_TRUE(std::isnan(solved.difference()));
   EXPECT_THAT(solved.refusal(), HasSubstr("Simbody's constraint solver returns reactions that are "
-                                          "no numbers"));
+                                          "not finite"));
   try {
     require_accurate_forces(solved.estimated(), 0.3);
     FAIL() << "not refused";

@@ -491,9 +491,10 @@ TEST(Errors, ALossThatCouldNotBeEstimatedIsWarnedOf) {
     return study::rounding_warnings({{"Rcs", loss, 0, 30, "d"}});
   };
   EXPECT_THAT(warnings(1e-10), testing::IsEmpty());
-  EXPECT_THAT(warnings(2e-9), testing::ElementsAre(testing::HasSubstr("Rcs is known to 2.0e-09")));
+  EXPECT_THAT(warnings(2e-9),
+              testing::ElementsAre(testing::HasSubstr("Rcs is accurate to 2.0e-09")));
   EXPECT_THAT(warnings(not_computed()),
-              testing::ElementsAre(testing::HasSubstr("Rcs is known to an unknown share")));
+              testing::ElementsAre(testing::HasSubstr("Rcs is accurate to an unknown share")));
   study::MultibodyLosses lost;
   lost.groups["Rcs"] = not_computed();
   EXPECT_THAT(study::multibody_warnings(shipped_case(), {}, {}, lost),

@@ -208,7 +208,7 @@ class UncertaintyTest(ProgramTest):
             ((case, "--vary", "pump.tilt_deg"), ["--vary pump.tilt_deg", "NAME=DISTRIBUTION"]),
             ((case, "--vary", "pump.tilt=normal(1)"), ["pump.tilt", "pump.tilt_deg"]),
             ((case, "--vary", "pump.tilt_deg=normal(1, -1)"), ["normal(1, -1)", "> 0"]),
-            ((case, "--vary", "pump.tilt_deg=normal(1)", "--vary", "pump.tilt_deg=normal(2)"), ["normal(2)", "twice"]),
+            ((case, "--vary", "pump.tilt_deg=normal(1)", "--vary", "pump.tilt_deg=normal(2)"), ["normal(2)", "more than once"]),
             ((case, "--sobol", 64), ["independent"]),
             ((case, "--level", 2), ["--level"]),
         ):

@@ -184,13 +184,13 @@ TEST(UncertaintyTable, RefusesByLineWhatItCannotBe) {
   const auto why = [](const std::string& lines) {
     return refusal([&] { parse_case(case_with("\n[uncertainty]\n" + lines), "my.toml"); });
   };
-  EXPECT_THAT(
-      why("\"pump.tilt\" = \"normal(1)\"\n"),
-      testing::MatchesRegex("my.toml:[0-9]+: .uncertainty. pump.tilt = .*no such parameter.*"
-                            "pump.tilt_deg.*"));
+  EXPECT_THAT(why("\"pump.tilt\" = \"normal(1)\"\n"),
+              testing::MatchesRegex(
+                  "my.toml:[0-9]+: .uncertainty. pump.tilt = .*not a number of this case.*"
+                  "pump.tilt_deg.*"));
   EXPECT_THAT(why("\"pump.tilt_deg\" = 1\n"), testing::HasSubstr("must be a text"));
   EXPECT_THAT(why("\"pump.pistons\" = \"uniform(3, 9)\"\n"),
-              testing::HasSubstr("no such parameter"));
+              testing::HasSubstr("not a number of this case"));
   const std::string one = "\"pump.tilt_deg\" = \"normal(1)\"\n";
   EXPECT_THAT(why(one + "correlation = [[\"pump.tilt_deg\", \"piston.mass_kg\", 0.5]]\n"),
               testing::HasSubstr("piston.mass_kg has no distribution"));

@@ -185,7 +185,7 @@ class CaseReader {
     const std::filesystem::path file = result_.file.parent_path() / name;
     if (!std::filesystem::exists(file)) in.fail(parameter.key, "no such file: " + file.string());
     if (std::filesystem::is_directory(file))
-      in.fail(parameter.key, "is a folder: " + file.string());
+      in.fail(parameter.key, "is a directory: " + file.string());
     store(parameter, result_, file.string());
     if (field.opening != nullptr) {
       *field.opening(result_) = read_opening_table(file);

@@ -181,7 +181,7 @@ std::vector<fs::path> OutputFolder::commit(const std::string& record, const Name
   for (const auto& stream : streams_) stream->finish();
   const FolderLock lock(folder_);
   for (const Pending& file : pending_)
-    if (fs::is_directory(file.final_path)) fail(file.final_path, "is a folder");
+    if (fs::is_directory(file.final_path)) fail(file.final_path, "is a directory");
   const std::vector<fs::path> old = superseded(record, names_in);
   std::vector<fs::path> paths;
   const auto move = [&](const fs::path& from, const fs::path& to, const fs::path& shown) {

@@ -51,7 +51,7 @@ fs::path checked_place(const std::string& out) {
   fs::path place = out;
   if (place.extension() != ".fmu" || place.stem().empty())
     throw InputError("--out " + out + ": must be a file that ends in .fmu");
-  if (fs::is_directory(place)) throw InputError("--out " + out + ": is a folder");
+  if (fs::is_directory(place)) throw InputError("--out " + out + ": is a directory");
   return place;
 }
 

@@ -116,7 +116,7 @@ void add_comparison_pieces(py::module_& module) {
       .def_property_readonly(
           "name", [](const ChannelComparison& self) { return self.channel.name; },
           "Name of the channel.")
-      .def_readonly("channel", &ChannelComparison::channel, "What it is.")
+      .def_readonly("channel", &ChannelComparison::channel, "Description of the channel.")
       .def_property_readonly(
           "verdict",
           [](const ChannelComparison& self) { return std::string(to_string(self.verdict)); },

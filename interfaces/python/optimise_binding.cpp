@@ -140,9 +140,9 @@ std::vector<fs::path> report_optimisation(const Optimisation& self, const fs::pa
 }  // namespace
 
 void add_optimisation(py::module_& module) {
-  py::class_<ChosenDesign>(module, "ChosenDesign", "A design of the front, and what it is best in.")
+  py::class_<ChosenDesign>(module, "ChosenDesign", "A chosen design of the front.")
       .def_readonly("why", &ChosenDesign::why, "\"least peak:Rb1\", \"balanced\".")
-      .def_readonly("design", &ChosenDesign::design, "Its row.");
+      .def_readonly("design", &ChosenDesign::design, "Row of the design.");
   py::class_<Optimisation, Table, std::shared_ptr<Optimisation>>(
       module, "Optimisation",
       "A table of all designs that a search evaluated: parameters that vary and outputs, in the "
@@ -151,12 +151,12 @@ void add_optimisation(py::module_& module) {
           "chosen", [](const Optimisation& self) { return self.found->chosen; },
           "The best design of each objective and a balanced one; empty where no design keeps all "
           "constraints.")
-      .def_property_readonly("front", &front, "Rows of the designs that no other beats.")
+      .def_property_readonly("front", &front, "Rows of the Pareto front.")
       .def_property_readonly("infeasible", &infeasible_designs,
-                             "Why designs are not allowed or have no outputs, by their rows.")
+                             "Reasons why designs are infeasible or have no outputs, by row.")
       .def_property_readonly(
           "headline", [](const Optimisation& self) { return designs::headline(*self.found); },
-          "What came out, in a line.")
+          "Summary in one line.")
       .def_property_readonly(
           "answers",
           [](const Optimisation& self) {

@@ -9,7 +9,7 @@
 namespace bentaxis::python {
 namespace {
 
-std::string key_of(const Table& table, const Parameter& parameter) {
+std::string key_of(const bentaxis::Table& table, const Parameter& parameter) {
   return (table.name.empty() ? "" : table.name + ".") + parameter.key;
 }
 
@@ -59,7 +59,7 @@ void PythonCase::change(const Changes& changes) {
 
 std::vector<std::string> PythonCase::keys() const {
   std::vector<std::string> keys;
-  for (const Table& table : standard_registry().tables)
+  for (const bentaxis::Table& table : standard_registry().tables)
     for (const Parameter& parameter : table.parameters)
       if (is_active(table, parameter, standard_registry(), case_) && value_of(parameter, case_))
         keys.push_back(key_of(table, parameter));
@@ -74,13 +74,13 @@ std::optional<Value> PythonCase::value(const std::string& key) const {
 
 std::vector<std::string> all_keys() {
   std::vector<std::string> keys;
-  for (const Table& table : standard_registry().tables)
+  for (const bentaxis::Table& table : standard_registry().tables)
     for (const Parameter& parameter : table.parameters) keys.push_back(key_of(table, parameter));
   return keys;
 }
 
 const Parameter* parameter_called(const std::string& key) {
-  for (const Table& table : standard_registry().tables)
+  for (const bentaxis::Table& table : standard_registry().tables)
     for (const Parameter& parameter : table.parameters)
       if (key_of(table, parameter) == key) return &parameter;
   return nullptr;

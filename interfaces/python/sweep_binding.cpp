@@ -105,7 +105,7 @@ std::vector<std::filesystem::path> report_sweep(const Sweep& self,
 void add_sweep(py::module_& module) {
   py::class_<SweepCheck>(module, "SweepCheck",
                          "A design that was also computed by the other model.")
-      .def_readonly("design", &SweepCheck::design, "Its row.")
+      .def_readonly("design", &SweepCheck::design, "Row of the design.")
       .def_readonly("own", &SweepCheck::own, "Outputs by the model of the sweep.")
       .def_readonly("values", &SweepCheck::values, "Outputs by the other model.")
       .def_readonly("scales", &SweepCheck::scales,

@@ -145,7 +145,7 @@ class ChannelComparison:
 
     @property
     def channel(self) -> Channel:
-        """What it is."""
+        """Description of the channel."""
 
     @property
     def verdict(self) -> str:
@@ -224,7 +224,7 @@ class Check:
 
 
 class ChosenDesign:
-    """A design of the front, and what it is best in."""
+    """A chosen design of the front."""
 
     @property
     def why(self) -> str:
@@ -232,7 +232,7 @@ class ChosenDesign:
 
     @property
     def design(self) -> int:
-        """Its row."""
+        """Row of the design."""
 
 
 class Comparison:
@@ -464,15 +464,15 @@ class Optimisation(Table):
 
     @property
     def front(self) -> list[int]:
-        """Rows of the designs that no other beats."""
+        """Rows of the Pareto front."""
 
     @property
     def infeasible(self) -> dict[int, str]:
-        """Why designs are not allowed or have no outputs, by their rows."""
+        """Reasons why designs are infeasible or have no outputs, by row."""
 
     @property
     def headline(self) -> str:
-        """What came out, in a line."""
+        """Summary in one line."""
 
     @property
     def answers(self) -> list[str]:
@@ -760,7 +760,7 @@ class SweepCheck:
 
     @property
     def design(self) -> int:
-        """Its row."""
+        """Row of the design."""
 
     @property
     def own(self) -> list[float]:
