@@ -170,7 +170,7 @@ TEST_F(Goodness, FrictionThatIsLeftOutRefutesTheFitAndIsNamed) {
     EXPECT_THAT(words, Not(HasSubstr("most useful further measurement")));
     EXPECT_THAT(words, Not(HasSubstr("as wide as the bounds")));
   }
-  EXPECT_THAT(text, HasSubstr("the further unknown that would improve the fit most: "
+  EXPECT_THAT(text, HasSubstr("The further unknown that would improve the fit most: "
                               "friction.piston_coulomb_N"));
   EXPECT_THAT(text, HasSubstr("Birge ratio"));
   EXPECT_EQ(document.verdict->agrees, false);
