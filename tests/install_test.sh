@@ -23,11 +23,11 @@ grep -q 'no component "analitic": there are pump' <(tr -s '\n ' ' ' < "$scratch/
 cd "$scratch"
 "$scratch/build/uses_bentaxis" "$source_dir/cases/bap63_rated.toml" "$source_dir/cases/bap63_rated_hydraulic.toml"
 share=usr/share
-for file in doc/bentaxis/{LICENSE,README.md,CHANGELOG.md,docs/command_line.md} man/man1/bentaxis.1 \
+for file in doc/bentaxis/{LICENSE,README.md,CHANGELOG.md,docs/command_line.md} man/man1/bentaxis.1.gz \
     bash-completion/completions/bentaxis zsh/site-functions/_bentaxis fish/vendor_completions.d/bentaxis.fish; do
   test -s "$share/$file" || { echo "not installed: $file"; exit 1; }
 done
-usr/bin/bentaxis manual | cmp - $share/man/man1/bentaxis.1
+usr/bin/bentaxis manual | cmp - <(gzip -dc $share/man/man1/bentaxis.1.gz)
 usr/bin/bentaxis completion bash | cmp - $share/bash-completion/completions/bentaxis
 # Every link of an installed document leads to a file that is installed; and the check notices one that does not.
 dead_links() {

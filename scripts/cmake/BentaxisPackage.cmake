@@ -23,7 +23,8 @@ endif()
 set(changelog ${CMAKE_CURRENT_BINARY_DIR}/changelog.Debian)
 file(WRITE ${changelog} "bentaxis (${PROJECT_VERSION}) bookworm; urgency=medium
 
-  * Version ${PROJECT_VERSION}. Its changes are listed in /usr/share/doc/bentaxis/CHANGELOG.md.
+  * Version ${PROJECT_VERSION}. Its changes are listed in
+    /usr/share/doc/bentaxis/CHANGELOG.md.
 
  -- ${maintainer}  ${date}
 ")
