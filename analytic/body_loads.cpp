@@ -323,16 +323,16 @@ std::vector<BodyLoad> BodyLoads::of_row(const Instant& instant, const std::vecto
 
 namespace {
 
-// @param place  makes of an instant the one that is evaluated
-template <class Rows, class Place>
+// @param loads_at  all loads at an instant
+template <class Rows, class LoadsAt>
 BodyLoadTable run_rows(const Case& the_case, const Assumptions& assumptions, const Rows& rows,
-                       std::size_t count, const Place& place, const Progress& progress) {
+                       std::size_t count, const LoadsAt& loads_at, const Progress& progress) {
   BodyLoads loads(validate(the_case).pump, assumptions);
   BodyLoadTable table;
   Instant instant;
   for (std::size_t row = 0; row < count; ++row) {
     rows.instant(row, instant);
-    table.append(loads.evaluate(place(instant)));
+    table.append(loads_at(loads, instant));
     if (progress) progress(static_cast<double>(row + 1) / static_cast<double>(count));
   }
   return table;
@@ -344,16 +344,23 @@ BodyLoadTable run_body_loads(const Case& the_case, const Assumptions& assumption
                              const Samples& samples, const Progress& progress) {
   const Model model(the_case.pump, assumptions);
   PlacedSamples placed(model, the_case);
+  std::vector<double> values(model.layout().size());
+  TeethAction teeth;
   return run_rows(
       the_case, assumptions, samples, samples.theta_deg.size(),
-      [&](const Instant& instant) -> const Instant& { return placed.at(instant); }, progress);
+      [&](const BodyLoads& loads, const Instant& instant) {
+        const Instant& at = placed.at(instant);
+        evaluate_at_constant_speed(model, at, values, &teeth);
+        return loads.of_row(at, values, teeth);
+      },
+      progress);
 }
 
 BodyLoadTable run_body_loads(const Case& the_case, const Assumptions& assumptions,
                              const States& states, const Progress& progress) {
   return run_rows(
       the_case, assumptions, states, states.rows(),
-      [](const Instant& instant) -> const Instant& { return instant; }, progress);
+      [](BodyLoads& loads, const Instant& instant) { return loads.evaluate(instant); }, progress);
 }
 
 }  // namespace bentaxis::analytic

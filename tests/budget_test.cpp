@@ -73,7 +73,7 @@ double over_peak(const ResultTable& table, const std::string& column, const std:
 
 TEST(Budget, ClosesOnAllStoredCasesInBothModels) {
   const auto files = stored_cases();
-  ASSERT_EQ(files.size(), 25);
+  ASSERT_EQ(files.size(), 28);
   for (const auto& file : files) {
     SCOPED_TRACE(file);
     const study::PreparedCase ready = study::prepare(read_case(file));

@@ -833,7 +833,7 @@ std::string refusal(const Case& the_case) {
 TEST(HardInput, WhatHasNoPeriodicStateIsRefused) {
   Case the_case = rated();
   the_case.operation.speed_rpm = 0;
-  EXPECT_THAT(refusal(the_case), testing::HasSubstr("standstill"));
+  EXPECT_THAT(refusal(the_case), testing::HasSubstr("at rest"));
   the_case.operation.speed_rpm = -1500;
   EXPECT_THAT(refusal(the_case), testing::HasSubstr("motoring"));
   the_case = rated();

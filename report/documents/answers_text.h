@@ -1,16 +1,19 @@
 // What a command is asked, as text.
 #pragma once
 
+#include <algorithm>
 #include <cctype>
 #include <string>
 #include <vector>
 
 namespace bentaxis::report {
 
-/// With a capital and a full stop.
+/// With a full stop, and with a capital unless it begins with a key of a case file: "drive.kind".
 inline std::string sentence(std::string text) {
   if (text.empty()) return text;
-  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  const std::size_t end = std::min(text.find(' '), text.size() - 1);
+  const bool key = text.find('.') < end;  // within the first word
+  if (!key) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   return text.back() == '.' ? text : text + ".";
 }
 
