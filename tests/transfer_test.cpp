@@ -638,7 +638,8 @@ TEST(TransferBatch, IsTheModelAtOneInstant) {
     std::vector<double> theta(kCount);
     for (std::size_t i = 0; i < kCount; ++i) theta[i] = 0.3 * static_cast<double>(i) - 4;
     std::vector<analytic::Varying> pressures(5);
-    for (std::size_t k = 0; k < 5; ++k) pressures[k] = {nullptr, 1e5 * (10 + 50 * static_cast<double>(k))};
+    for (std::size_t k = 0; k < 5; ++k)
+      pressures[k] = {nullptr, 1e5 * (10 + 50 * static_cast<double>(k))};
     analytic::BatchInstants instants;
     instants.count = kCount;
     instants.theta = {theta.data(), 0};
