@@ -375,7 +375,7 @@ class HandOnTest(unittest.TestCase):
         for name in ("one", "other"):
             (self.folder / "several").mkdir(exist_ok=True)
             shutil.copytree(self.folder / "rig", self.folder / "several" / name)
-        for folder, words in (("several", "holds 2 references"), ("nowhere", "is not a directory"), (REPO / "reference_data" / "published" / "bap63", "printed numbers")):
+        for folder, words in (("several", "contains 2 references"), ("nowhere", "is not a directory"), (REPO / "reference_data" / "published" / "bap63", "printed numbers")):
             with self.subTest(folder):
                 done = run(self.folder, "compare", "case.toml", "--with", folder, "--out", "refused", status=2)
                 self.assertIn(words, done.stderr)
