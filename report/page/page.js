@@ -139,7 +139,7 @@ function render() {
   const report = read("report"), data = prepare(report, read("curves") || {});
   data.scene = document.getElementById("scene") && read("scene");
   document.getElementById("head").replaceChildren(...header(report, data));
-  const main = document.getElementById("main");
+  const main = document.getElementById("main"), notices = document.getElementById("notices");
   main.replaceChildren();
   startDrawing();
   const shown = [];
@@ -151,6 +151,7 @@ function render() {
       el("h2", { id: id + "-title" }, title), body));
     shown.push({ id, title });
   }
+  if (notices) main.append(notices);  // beside the contents, which stay as long as main does
   data.mounts.forEach(mount => mount());  // a plot needs its box in the page, to know its width
   document.getElementById("contents").replaceChildren(contents(shown, report));
 }
