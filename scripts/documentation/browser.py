@@ -110,7 +110,7 @@ class Browser:
             raise RuntimeError(result["exceptionDetails"].get("exception", {}).get("description", "script failed"))
         return result["result"].get("value")
 
-    def wait_for(self, script, seconds=20):
+    def wait_for(self, script, seconds=90):
         """The expression's value as soon as it is true; its last value where it never is."""
         deadline = time.monotonic() + seconds
         while True:
