@@ -388,7 +388,7 @@ class SweepTest(ProgramTest):
             ((*output, "--vary", "pump.tilt_deg=20:40"), ("pump.tilt_deg = 20:40", "FROM:TO:STEP", "--sampling")),
             ((*output, "--vary", "pump.tilt_deg=a"), ("pump.tilt_deg = a", "number")),
             ((*output, "--vary", "pump.tilt_deg="), ("pump.tilt_deg", "values")),
-            ((*output, *vary, "--vary", "pump.tilt_deg=30:40:5"), ("pump.tilt_deg", "twice")),
+            ((*output, *vary, "--vary", "pump.tilt_deg=30:40:5"), ("pump.tilt_deg", "more than once")),
             ((*output, "--vary", "pump.tilt_deg=log(0:40:#3)"), ("pump.tilt_deg", "0 < FROM")),
             ((*output, "--vary", "pump.tilt_deg=log(1:40:3)"), ("pump.tilt_deg", "#N")),
             ((*output, "--vary", "pump.tilt_deg=normal(40, 1)"), ("pump.tilt_deg", "--sampling")),
