@@ -41,7 +41,8 @@ EOF
 wrong=$(dead_links $share/doc/bentaxis)
 [[ -z $wrong ]] || { echo "installed documents: $wrong"; exit 1; }
 mv $share/doc/bentaxis/docs/limits.md .
-dead_links $share/doc/bentaxis | grep -q 'README.md.*limits.md: no such file' || { echo "a dead link is not noticed"; exit 1; }
+wrong=$(dead_links $share/doc/bentaxis)
+[[ $wrong == *README.md*limits.md:\ no\ such\ file* ]] || { echo "a dead link is not noticed"; exit 1; }
 mv limits.md $share/doc/bentaxis/docs/
 # The documentation: the site where it was built, else how it is built.
 if [[ -f $share/doc/bentaxis/site/index.html ]]; then
