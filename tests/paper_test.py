@@ -221,7 +221,8 @@ class HandOnTest(unittest.TestCase):
                     # The legend's lines are short. Where several titles start alike, each must have its curves.
                     for number, top, _ in at:
                         width = self.coloured_columns(pages[number], int(top) + (60 if figure["kind"] == "scatter" else 20), min(int(top) + 300, pages[number][1]))
-                        enough = {"piston_bars": 150, "xy": 150, "scatter": 40}.get(figure["kind"], 290)
+                        # A scatter is of measured times: points of about the same time are drawn over each other. Without points it is 0.
+                        enough = {"piston_bars": 150, "xy": 150, "scatter": 20}.get(figure["kind"], 290)
                         # Equal scales leave room beside what is drawn: two thin loops, a round plate; polygons are
                         # taller than wide, and no figure is taller than 108 mm.
                         enough = {"bearing_loci": 5, "plate_pressure": 120, "polygon_piston": 150,
