@@ -137,7 +137,7 @@ TEST(DerivedDisplacementTest, MissingPointsBiasNothing) {
 
 // ---- The pump of a case
 
-DisplacementStudy study_of(const std::string& name, std::vector<std::string> changes = {}) {
+DisplacementStudy study_of(const std::string& name, const std::vector<std::string>& changes = {}) {
   const Case the_case =
       read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/" + name + ".toml", changes);
   return displacement_study(the_case, usual_test_speeds(the_case), usual_test_pressures(the_case));

@@ -376,8 +376,8 @@ TEST(FrozenLagOfPistons, HandsOverAsTheGeometrySays) {
   for (const int pistons : {5, 7, 6}) {
     auto changes = kSymmetric;
     changes.push_back("pump.pistons=" + std::to_string(pistons));
-    changes.push_back("transfer.stiffness_N_per_um=1000000");
-    changes.push_back("transfer.dissipation_s_per_m=0");
+    changes.emplace_back("transfer.stiffness_N_per_um=1000000");
+    changes.emplace_back("transfer.dissipation_s_per_m=0");
     const Case the_case = transfer_case("pistons_seven", changes);
     const Geometry& g = the_case.pump.geometry;
     const bool odd = pistons % 2 == 1;

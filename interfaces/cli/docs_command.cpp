@@ -24,7 +24,7 @@ fs::path start_page() {
   std::error_code error;
   const auto site = shipped_folder("site", fs::read_symlink("/proc/self/exe", error),
                                    BENTAXIS_DOCUMENTS_FROM_BINARY);
-  const fs::path page = site.value_or(fs::path()) / "index.html";
+  fs::path page = site.value_or(fs::path()) / "index.html";
   if (!site || !fs::is_regular_file(page, error))
     throw InputError(
         "the documentation site is not there; in the source tree \"scripts/setup docs\" and "

@@ -124,11 +124,11 @@ struct QuantileEvaluator::Implementation {
   }
 };
 
-QuantileEvaluator::QuantileEvaluator(const Case& base, std::vector<Variable> variables,
+QuantileEvaluator::QuantileEvaluator(const Case& base, const std::vector<Variable>& variables,
                                      std::vector<QuantileOutput> outputs, std::size_t samples,
                                      std::uint64_t seed, study::Model model)
-    : implementation_(std::make_unique<Implementation>(base, std::move(variables),
-                                                       std::move(outputs), samples, seed, model)) {}
+    : implementation_(std::make_unique<Implementation>(base, variables, std::move(outputs), samples,
+                                                       seed, model)) {}
 QuantileEvaluator::~QuantileEvaluator() = default;
 QuantileEvaluator::QuantileEvaluator(QuantileEvaluator&&) noexcept = default;
 
@@ -136,7 +136,7 @@ std::size_t QuantileEvaluator::samples() const { return implementation_->samples
 
 std::string QuantileEvaluator::evaluate(std::span<const double> values,
                                         std::span<double> results) const {
-  const std::string why = study::reason_of([&] { implementation_->find(values, results); });
+  std::string why = study::reason_of([&] { implementation_->find(values, results); });
   if (!why.empty()) std::fill(results.begin(), results.end(), not_computed());
   return why;
 }

@@ -28,10 +28,15 @@ enum class Repeat {
 /// Kinds of transfer, as bits by their number in TransferKind.
 namespace transfers {
 constexpr unsigned bit(TransferKind kind) { return 1U << static_cast<unsigned>(kind); }
-inline constexpr unsigned gear = bit(TransferKind::gear), cardan = bit(TransferKind::cardan),
-                          pistons = bit(TransferKind::pistons),
-                          joint = cardan | bit(TransferKind::constant_velocity),
-                          cardan_or_pistons = cardan | pistons, all = gear | joint | pistons;
+enum Set : unsigned {
+  gear = bit(TransferKind::gear),
+  cardan = bit(TransferKind::cardan),
+  pistons = bit(TransferKind::pistons),
+  joint = bit(TransferKind::cardan) | bit(TransferKind::constant_velocity),
+  cardan_or_pistons = bit(TransferKind::cardan) | bit(TransferKind::pistons),
+  all = bit(TransferKind::gear) | bit(TransferKind::cardan) | bit(TransferKind::pistons) |
+        bit(TransferKind::constant_velocity)
+};
 }  // namespace transfers
 inline constexpr std::size_t kTransferKinds = 4;
 

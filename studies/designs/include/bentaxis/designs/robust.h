@@ -27,7 +27,7 @@ class QuantileEvaluator {
   ///                   its value: "normal(0.1)", "relative(0.01)"
   /// @throws InputError where the case has no [uncertainty], a distribution does not move with its
   ///                    variable, or the samples are too few for a quantile
-  QuantileEvaluator(const Case& base, std::vector<Variable> variables,
+  QuantileEvaluator(const Case& base, const std::vector<Variable>& variables,
                     std::vector<QuantileOutput> outputs, std::size_t samples, std::uint64_t seed,
                     study::Model model);
   ~QuantileEvaluator();
