@@ -35,7 +35,7 @@ struct BodyLoads::Implementation {
         prepared(prepare(the_pump, the_assumptions)),
         values(model.layout().size()) {}
 
-  std::vector<BodyLoad> all(const Instant& instant, const std::vector<double>& row,
+  std::vector<BodyLoad> all(const Instant& given, const std::vector<double>& row,
                             const TeethAction& acting) const;
   template <class State>
   void add_pistons(const Instant& instant, const State& state, const std::vector<double>& row,
