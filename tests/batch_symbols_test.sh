@@ -15,7 +15,9 @@ cd "$scratch"
 status=0
 for set in sse2 avx2 avx512; do
   ar x "$library" "$set.cpp.o"
-  if ! nm -C --defined-only "$set.cpp.o" | grep -q "run_batch_$set"; then
+  # Names first, then the look: `grep -q` ends at its first find, and a pipe that it leaves counts as failed.
+  names=$(nm -C --defined-only "$set.cpp.o")
+  if ! grep -q "run_batch_$set" <<< "$names"; then
     echo "error: no kernel for $set"; status=1
   fi
   found=$(shared_symbols "$set.cpp.o" "$set")

@@ -16,7 +16,7 @@ for name in $needed; do
   esac
 done
 [ -n "$needed" ] || say "nothing is needed, not even libc: is this the library?"
-if readelf -d "$library" | grep -qE 'RPATH|RUNPATH|TEXTREL'; then say "has a run path or text relocations"; fi
+if grep -qE 'RPATH|RUNPATH|TEXTREL' <<< "$(readelf -d "$library")"; then say "has a run path or text relocations"; fi
 
 shown=$(nm -D --defined-only "$library" | awk '{print $NF}' | sed 's/@.*//')
 others=$(grep -vE '^fmi[23][A-Z]' <<< "$shown" || true)

@@ -31,7 +31,7 @@ field() { dpkg-deb -f "$package" "$1"; }
 [[ $(field Version) == $(sed -n 's/^CMAKE_PROJECT_VERSION:STATIC=//p' "$build/CMakeCache.txt") ]]
 # What is linked, and what is loaded at run time.
 for library in libsimbody librsvg2-2 libtbb libpugixml $(grep -q dist-packages content && echo python3-numpy); do
-  field Depends | grep -q "$library" || { echo "Depends lacks $library: $(field Depends)"; exit 1; }
+  grep -q "$library" <<< "$(field Depends)" || { echo "Depends lacks $library: $(field Depends)"; exit 1; }
 done
 # A maintainer and a home page are true or not there: no address that stands for one.
 maintainer=$(field Maintainer)
@@ -52,8 +52,7 @@ version=$(dpkg-parsechangelog -l changelog -S Version 2> parsed) || { cat parsed
 [[ $(dpkg-parsechangelog -l changelog -S Maintainer) == "$maintainer"* ]]
 if grep -qi example changelog; then echo "placeholder in the changelog"; exit 1; fi
 # The machine-readable form of copyright files: its first line, and a licence for all files.
-head -n 1 $documents/copyright |
-  grep -qxF 'Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/'
+[[ $(head -n 1 $documents/copyright) == 'Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/' ]]
 grep -qx 'Files: \*' $documents/copyright
 [[ $(grep -cx 'License: Apache-2.0' $documents/copyright) == 2 ]]
 grep -q '^Copyright: ' $documents/copyright
