@@ -13,14 +13,10 @@
 #include <exception>
 #include <memory>
 #include <nlopt.hpp>
-#include <pagmo/algorithm.hpp>
-#include <pagmo/algorithms/gaco.hpp>
-#include <pagmo/algorithms/nsga2.hpp>
-#include <pagmo/batch_evaluators/member_bfe.hpp>
-#include <pagmo/bfe.hpp>
-#include <pagmo/population.hpp>
-#include <pagmo/problem.hpp>
-#include <pagmo/utils/hypervolume.hpp>
+#include <pagmo/config.hpp>  // its version: the library is linked with search_module.cpp
+
+#include "module.h"
+#include "search_module.h"
 #endif
 
 namespace bentaxis::designs {
@@ -122,54 +118,43 @@ void must_be_possible(const SearchProblem& problem, const SearchOptions& options
       throw InputError("search: a variable needs a lower bound below its upper one");
 }
 
-// The same problem as pagmo wants it: whole numbers last, no constraints, one vector a batch.
-class Unconstrained {
- public:
-  Unconstrained() = default;  // pagmo makes one before it copies
-  Unconstrained(const SearchProblem& problem, std::vector<std::size_t> order)
-      : problem_(&problem), order_(std::move(order)) {}
+const Module& module() {
+  static const Module loaded(BENTAXIS_SEARCH_MODULE);
+  return loaded;
+}
 
-  std::vector<double> fitness(const std::vector<double>& x) const { return batch_fitness(x); }
+template <class Function>
+Function& of_pagmo(const char* name) {
+  Function* const function = module().function<Function>(name);
+  if (function == nullptr)
+    throw InputError(std::string("optimise: the part of the program that searches, ") +
+                     BENTAXIS_SEARCH_MODULE + ", cannot be loaded" +
+                     (module().why().empty() ? ": no such file" : ": " + module().why()));
+  return *function;
+}
 
-  std::vector<double> batch_fitness(const std::vector<double>& xs) const {
-    const std::size_t n = problem_->variables(), m = problem_->numbers();
-    const std::size_t count = xs.size() / n;
-    std::vector<double> points(xs.size()), results(count * m);
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t k = 0; k < n; ++k) points[i * n + order_[k]] = xs[i * n + k];
-    problem_->evaluate(count, points, results);
-    std::vector<double> costs;
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto row = std::span<const double>(results).subspan(i * m, m);
-      const double wrong = violation(*problem_, row);
-      for (std::size_t k = 0; k < problem_->objectives; ++k)
-        costs.push_back(wrong == 0          ? row[k]
-                        : std::isinf(wrong) ? kNoValues
-                                            : kForbidden * (1 + wrong));
-    }
-    return costs;
+// Costs of points whose variables are in another order; what is not allowed costs more than all
+// that is.
+std::vector<double> costs_without_constraints(const SearchProblem& problem,
+                                              const std::vector<std::size_t>& order,
+                                              const std::vector<double>& xs) {
+  const std::size_t n = problem.variables(), m = problem.numbers();
+  const std::size_t count = xs.size() / n;
+  std::vector<double> points(xs.size()), results(count * m);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < n; ++k) points[i * n + order[k]] = xs[i * n + k];
+  problem.evaluate(count, points, results);
+  std::vector<double> costs;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto row = std::span<const double>(results).subspan(i * m, m);
+    const double wrong = violation(problem, row);
+    for (std::size_t k = 0; k < problem.objectives; ++k)
+      costs.push_back(wrong == 0          ? row[k]
+                      : std::isinf(wrong) ? kNoValues
+                                          : kForbidden * (1 + wrong));
   }
-
-  std::pair<std::vector<double>, std::vector<double>> get_bounds() const {
-    std::pair<std::vector<double>, std::vector<double>> bounds;
-    for (const std::size_t k : order_) {
-      bounds.first.push_back(problem_->low[k]);
-      bounds.second.push_back(problem_->high[k]);
-    }
-    return bounds;
-  }
-  std::size_t get_nobj() const { return problem_->objectives; }
-  std::size_t get_nix() const {
-    return static_cast<std::size_t>(
-        std::count(problem_->whole.begin(), problem_->whole.end(), true));
-  }
-  template <class Archive>
-  void serialize(Archive& /*archive*/, unsigned /*version*/) {}  // never kept
-
- private:
-  const SearchProblem* problem_ = nullptr;
-  std::vector<std::size_t> order_;  // pagmo's variable k is this one
-};
+  return costs;
+}
 
 // The first population: the points to start from, then such as fill the whole range evenly.
 std::vector<double> first_points(const SearchProblem& problem, std::span<const double> start,
@@ -189,38 +174,26 @@ std::vector<double> first_points(const SearchProblem& problem, std::span<const d
 void explore(const SearchProblem& problem, std::span<const double> start,
              const SearchOptions& options, std::uint64_t seed) {
   const std::size_t n = problem.variables(), size = options.population;
-  std::vector<std::size_t> order;
+  std::vector<std::size_t> order;  // pagmo's variable k is this one
   for (const bool whole : {false, true})
     for (std::size_t k = 0; k < n; ++k)
       if (problem.whole[k] == whole) order.push_back(k);
-  const Unconstrained unconstrained(problem, order);
-  const pagmo::problem wrapped(unconstrained);
-  const auto seed_here = static_cast<unsigned>(seed);
-  pagmo::population population(wrapped, 0, seed_here);
-  const std::vector<double> points = first_points(problem, start, size, seed);
-  std::vector<double> sorted(points.size());
-  for (std::size_t i = 0; i < size; ++i)
-    for (std::size_t k = 0; k < n; ++k) sorted[i * n + k] = points[i * n + order[k]];
-  const std::vector<double> costs = unconstrained.batch_fitness(sorted);
-  const auto row = [](const std::vector<double>& of, std::size_t i, std::size_t width) {
-    const auto first = of.begin() + static_cast<std::ptrdiff_t>(i * width);
-    return std::vector<double>(first, first + static_cast<std::ptrdiff_t>(width));
-  };
-  for (std::size_t i = 0; i < size; ++i)
-    population.push_back(row(sorted, i, n), row(costs, i, problem.objectives));
-  const auto generations = static_cast<unsigned>(options.generations);
-  if (generations == 0) return;
-  const pagmo::bfe batches{pagmo::member_bfe{}};
-  if (problem.objectives > 1) {
-    pagmo::nsga2 nsga(generations, 0.95, 10, 1 / static_cast<double>(n), 50, seed_here);
-    nsga.set_bfe(batches);
-    pagmo::algorithm(nsga).evolve(population);
-  } else {
-    pagmo::gaco ants(generations, static_cast<unsigned>(std::min<std::size_t>(size, 63)));
-    ants.set_seed(seed_here);
-    ants.set_bfe(batches);
-    pagmo::algorithm(ants).evolve(population);
+  Evolution evolution;
+  for (const std::size_t k : order) {
+    evolution.low.push_back(problem.low[k]);
+    evolution.high.push_back(problem.high[k]);
+    evolution.whole += problem.whole[k] ? 1 : 0;
   }
+  evolution.objectives = problem.objectives;
+  const std::vector<double> points = first_points(problem, start, size, seed);
+  for (std::size_t i = 0; i < size; ++i)
+    for (const std::size_t k : order) evolution.first.push_back(points[i * n + k]);
+  evolution.generations = static_cast<unsigned>(options.generations);
+  evolution.seed = static_cast<unsigned>(seed);
+  evolution.costs = [&](const std::vector<double>& xs) {
+    return costs_without_constraints(problem, order, xs);
+  };
+  of_pagmo<decltype(bentaxis_evolve)>("bentaxis_evolve")(evolution);
 }
 
 // One objective by gradients, in the variables that are no whole numbers.
@@ -508,7 +481,8 @@ double hypervolume(std::span<const double> costs, std::span<const double> refere
     for (const auto& point : points) least = std::min(least, point.front());
     return reference[0] - least;
   }
-  return pagmo::hypervolume(points, true).compute({reference.begin(), reference.end()});
+  return of_pagmo<decltype(bentaxis_hypervolume)>("bentaxis_hypervolume")(
+      points, {reference.begin(), reference.end()});
 }
 
 #else

@@ -1,9 +1,6 @@
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <memory>
 
@@ -12,6 +9,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/reporting.h"
+#include "module.h"
 #include "sobol_module.h"
 
 namespace bentaxis::designs {
@@ -25,52 +23,26 @@ constexpr double kOfEstimator = 1e-12;
 // An output whose round-off is this share of its standard deviation does not vary.
 constexpr double kNoVariation = 1e-3;
 
-// OpenTURNS brings eighty libraries, a BLAS of its own among them, and a tenth of a second: what is
-// linked with it is a file of its own, which is loaded when the first index is wanted.
-class Module {
- public:
-  Module() {
-    for (const std::filesystem::path& file : places())
-      if (library_ == nullptr && std::filesystem::exists(file)) {
-        library_ = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-        if (library_ == nullptr) why_ = dlerror();
-      }
-    if (library_ == nullptr) return;
-    indices_ = reinterpret_cast<decltype(&bentaxis_sobol_indices)>(
-        dlsym(library_, "bentaxis_sobol_indices"));
-  }
-  bool is_there() const { return indices_ != nullptr; }
-  const std::string& why() const { return why_; }
-
-  void indices(std::size_t base, std::size_t numbers, const std::vector<double>& inputs,
-               const std::vector<double>& outputs, std::vector<double>& found) const {
-    std::array<char, 500> message{};
-    if (indices_(base, numbers, inputs.data(), outputs.data(), kConfidence, found.data(),
-                 message.data(), message.size()) != 0)
-      throw ComputationError(std::string("Sobol indices: OpenTURNS: ") + message.data());
-  }
-
- private:
-  // Beside the program, where that is installed; where the library was installed or built.
-  static std::vector<std::filesystem::path> places() {
-#ifdef BENTAXIS_HAS_OPENTURNS
-    std::error_code none;
-    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", none);
-    return {program.parent_path() / BENTAXIS_MODULE_FROM_BINARY, BENTAXIS_MODULE_INSTALLED,
-            BENTAXIS_MODULE_BUILT};
-#else
-    return {};
+#ifndef BENTAXIS_HAS_OPENTURNS
+#define BENTAXIS_OPENTURNS_MODULE ""
 #endif
-  }
 
-  void* library_ = nullptr;
-  std::string why_;
-  decltype(&bentaxis_sobol_indices) indices_ = nullptr;
-};
-
+// OpenTURNS brings eighty libraries, a BLAS of its own among them, and a tenth of a second.
 const Module& module() {
-  static const Module loaded;
+  static const Module loaded(BENTAXIS_OPENTURNS_MODULE);
   return loaded;
+}
+
+auto* estimator() {
+  return module().function<decltype(bentaxis_sobol_indices)>("bentaxis_sobol_indices");
+}
+
+void estimate(std::size_t base, std::size_t numbers, const std::vector<double>& inputs,
+              const std::vector<double>& outputs, std::vector<double>& found) {
+  std::array<char, 500> message{};
+  if (estimator()(base, numbers, inputs.data(), outputs.data(), kConfidence, found.data(),
+                  message.data(), message.size()) != 0)
+    throw ComputationError(std::string("Sobol indices: OpenTURNS: ") + message.data());
 }
 
 // Points A, B, and A with column i of B, of base points one after the other: what estimators take,
@@ -131,7 +103,7 @@ double centre(std::vector<double>& values) {
 }  // namespace
 
 void require_sobol_indices() {
-  if (!module().is_there())
+  if (estimator() == nullptr)
     throw InputError(
         "--sobol: this program was built without OpenTURNS; install "
         "libopenturns-dev (scripts/setup full) and build again" +
@@ -186,7 +158,7 @@ SobolIndices sobol_indices(const Response& response, std::size_t outputs,
         column[r * kept.size() + k] = results[(kept[k] * rows + r) * outputs + o];
     std::vector<double> found(6 * n, not_computed());
     const double noise = is_computed(column.front()) ? centre(column) : HUGE_VAL;
-    if (noise < kNoVariation) module().indices(kept.size(), n, ordered, column, found);
+    if (noise < kNoVariation) estimate(kept.size(), n, ordered, column, found);
     const double round_off = std::max(kOfEstimator, noise);
     for (std::size_t i = 0; i < n; ++i) {
       const double* const row = found.data() + 6 * i;

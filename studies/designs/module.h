@@ -1,0 +1,29 @@
+// A part of the program that is a file of its own, because of the large libraries it is linked
+// with: loaded when it is first wanted, so that no other command waits for it.
+#pragma once
+
+#include <string>
+
+namespace bentaxis::designs {
+
+class Module {
+ public:
+  /// @param file  name of the file, as "bentaxis_openturns.so"; "": the program was built without
+  /// it
+  explicit Module(const std::string& file);
+  /// A function of the module by its name; null where the module or the function is missing.
+  template <class Function>
+  Function* function(const char* name) const {
+    return reinterpret_cast<Function*>(symbol(name));
+  }
+  /// Why the module could not be loaded; "" where there is none.
+  const std::string& why() const { return why_; }
+
+ private:
+  void* symbol(const char* name) const;
+
+  void* library_ = nullptr;
+  std::string why_;
+};
+
+}  // namespace bentaxis::designs
