@@ -264,6 +264,22 @@ class ProseTest(unittest.TestCase):
         text = "Usage: x\n\nOptions:\n  --out DIR   where results go\n  --model M   which model,\n              in words\n"
         self.assertIn((5, "which model, in words"), prose.of_plain_text(text))
 
+    def test_an_option_on_a_line_of_its_own_parts(self):
+        text = "  --out DIR   where results go\n  --way driven|integrated [driven]\n              how it runs"
+        self.assertEqual(prose.of_plain_text(text), [(1, "where results go"), (3, "how it runs")])
+
+    def test_code_ends_no_sentence(self):
+        self.assertEqual([list(prose.sentences(t)) for _, t in prose.of_plain_text("Runs it. `error`: wanted error.")], [["Runs it.", "CODE: wanted error."]])
+
+    def test_lines_of_a_cell_are_paragraphs(self):
+        self.assertEqual([t for _, t in prose.of_markdown("| a<br>b | c |")], ["a", "b", "c"])
+
+    def test_entries_of_printed_lists_are_counted_one_by_one(self):
+        answer = [(1, "Largest forces: " + "; ".join(["word " * 20] * 3))]
+        self.assertEqual(prose.long_sentences(self.rules.texts["answers"][0], answer, self.rules), [])
+        self.assertEqual(len(prose.long_sentences("docs/other.md", answer, self.rules)), 1)
+        self.assertEqual(len(prose.long_sentences(self.rules.texts["answers"][0], [(1, "word " * 40)], self.rules)), 1)
+
     def test_exceptions_need_a_reason(self):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "rules.toml"

@@ -159,7 +159,7 @@ TEST(OptimiseTest, ChoosesTheEndsOfTheFrontAndItsMiddle) {
   request.maximise = {"displacement_cm3"};
   const Optimisation found = run(rated(), request);
   ASSERT_EQ(found.chosen.size(), 3U);
-  EXPECT_EQ(found.chosen[0].why, "least peak:Rb1");
+  EXPECT_EQ(found.chosen[0].why, "lowest peak:Rb1");
   EXPECT_EQ(found.chosen[1].why, "largest displacement_cm3");
   EXPECT_EQ(found.chosen[2].why, "balanced");
   const auto& outputs = found.plan.designs.outputs;

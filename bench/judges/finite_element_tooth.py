@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""One tooth on a ring by finite elements: what docs/judges.md stores. Needs gmsh and ccx (CalculiX), nothing else does.
+"""One tooth on a ring by finite elements: what docs/external_benchmarks.md stores. Needs gmsh and ccx (CalculiX), nothing else does.
 
 usage: finite_element_tooth.py [size of elements in the tooth, modules; 0.04]
 

@@ -1,6 +1,6 @@
-// Numbers that nobody here wrote, against teeth and integrators (docs/judges.md).
+// Numbers that nobody here wrote, against teeth and integrators (docs/external_benchmarks.md).
 //
-//   judges      exit status 1 where a tolerance is exceeded that docs/judges.md does not know of
+//   judges      exit status 1 where a tolerance is exceeded that docs/external_benchmarks.md does not know of
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -43,7 +43,7 @@ int main() {
     unexpected += print("m 2 mm, 62/62 after Ma et al. 2014: N/m", pair_of_62());
     unexpected += print("One tooth by finite elements, stored: m/(N/m)", finite_element_tooth());
     unexpected += print("Kahraman and Singh's oscillator, exactly, and coupled/", oscillator());
-    std::printf("\nrows other than docs/judges.md says: %d\n", unexpected);
+    std::printf("\nrows other than docs/external_benchmarks.md says: %d\n", unexpected);
     return unexpected == 0 ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "judges: %s\n", error.what());

@@ -166,9 +166,10 @@ Command add_pressure_command(CommandParser program) {
       .text("FILE");
   command
       .option("--suction-speed", options->suction_speed,
-              "also the largest speed at which the chambers fill (at most 1 % of a stroke lost), "
-              "and the one at which no chamber falls below the pressure at which dissolved air is "
-              "released or oil boils, or below one in bar: 10 to 30 operating points each")
+              "also the largest speed at which the chambers fill (at most 1 % of a stroke lost). "
+              "With another word also the largest speed at which no chamber falls below that "
+              "pressure: dissolved air is released (saturation), oil boils (vapour), or the given "
+              "gauge pressure in bar. 10 to 30 operating points each")
       .text("filling|saturation|vapour|BAR");
   command.flag("--advise", options->advise,
                "also which key to change, and by how much, for each port timing quantity that "

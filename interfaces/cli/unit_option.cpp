@@ -18,10 +18,10 @@ void UnitOption::add_to(CommandParser command) {
       .text("NAME=VALUE");
   command
       .option("--connect", choice_.connect,
-              "A gets the value of B: an input of the pump (drive_speed, drive_acceleration, "
-              "drive_torque, suction_pressure, delivery_pressure, load_share) that of an output of "
-              "the FMU, or an input of the FMU that of a column of the CSV files; equal names are "
-              "always connected")
+              "A gets the value of B. A is an input of the pump (drive_speed, drive_acceleration, "
+              "drive_torque, suction_pressure, delivery_pressure, load_share) and B an output of "
+              "the FMU, or A is an input of the FMU and B a column of the CSV files. Equal names "
+              "are always connected")
       .repeatable()
       .text("A=B");
   command
@@ -31,8 +31,7 @@ void UnitOption::add_to(CommandParser command) {
       .text("SECONDS [that of the FMU, or between rows]");
   command
       .option("--fmu-timeout", choice_.limits.call_seconds,
-              "s, elapsed: the longest time that one call of a function of the FMU may take; 0: no "
-              "limit")
+              "s: the maximum elapsed time of one call of a function of the FMU; 0: no limit")
       .number_in(0, 1e6)
       .text("SECONDS [60]");
 }

@@ -57,7 +57,7 @@ void add_errors(py::module_& module) {
                       PyExc_UserWarning);
   plausibility_warning = new_class(
       module, "PlausibilityWarning",
-      "A case is valid but implausible: a plausibility warning, as listed by Case.doubts().",
+      "A case is valid but implausible: a plausibility warning, as listed by `Case.doubts()`.",
       warning);
   // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 wants it so
   py::register_exception_translator([](std::exception_ptr thrown) {

@@ -141,7 +141,7 @@ std::vector<fs::path> report_optimisation(const Optimisation& self, const fs::pa
 
 void add_optimisation(py::module_& module) {
   py::class_<ChosenDesign>(module, "ChosenDesign", "A chosen design of the front.")
-      .def_readonly("why", &ChosenDesign::why, "\"least peak:Rb1\", \"balanced\".")
+      .def_readonly("why", &ChosenDesign::why, "\"lowest peak:Rb1\", \"balanced\".")
       .def_readonly("design", &ChosenDesign::design, "Row of the design.");
   py::class_<Optimisation, Table, std::shared_ptr<Optimisation>>(
       module, "Optimisation",

@@ -125,7 +125,7 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
         {"flexibility of a slice of teeth",
          "bending, shear, compression, foundation and flattening of the equivalent spur "
          "tooth: one function for both models",
-         "mesh stiffness of a published spur pair and of ISO 6336 (docs/judges.md); "
+         "mesh stiffness of a published spur pair and of ISO 6336 (docs/external_benchmarks.md); "
          "1/E in the tests"});
     inputs.push_back(
         {"shape of the teeth and definition of their approach (docs/teeth.md)",

@@ -39,7 +39,7 @@ report::Section coupling_section(const SimulationResult& r) {
   const UnitCoupling& coupling = *r.choice.unit;
   const fmu::UnitDescription& unit = coupling.unit().description();
   report::Section section;
-  section.title = "Coupling to a unit";
+  section.title = "Coupling to an FMU";
   section.text =
       "A Functional Mock-up Unit acts on the pump: it receives values of the pump at every "
       "communication point, and its outputs are held until the next. Each model has its own "
@@ -47,7 +47,7 @@ report::Section coupling_section(const SimulationResult& r) {
       "the error is proportional to the step, twice the change is the estimated error of the "
       "results shown.";
   section.facts = {
-      {"unit", fmt::format("{}: {}, FMI {}.0{}", coupling.unit().file().filename().string(),
+      {"FMU", fmt::format("{}: {}, FMI {}.0{}", coupling.unit().file().filename().string(),
                            unit.model_name, unit.version,
                            unit.tool.empty() ? "" : ", made by " + unit.tool)},
       {"communication step", fmt::format("{:.6g} s", coupling.step())},
@@ -66,7 +66,7 @@ report::Section coupling_section(const SimulationResult& r) {
     section.facts.emplace_back("outputs of the FMU that are not used", report::joined(loose));
   const std::vector<std::string> said = coupling.log();
   for (std::size_t i = 0; i < said.size() && i < kMaxLines; ++i)
-    section.facts.emplace_back("the unit says", said[i]);
+    section.facts.emplace_back("message of the FMU", said[i]);
   section.table.columns = {"group", "unit",
                            "peak",  "change at half the step, of peak",
                            "at, s", "estimated error, of peak"};
@@ -88,7 +88,7 @@ std::vector<report::Warning> coupling_warnings(const SimulationResult& r) {
 std::string coupling_text(const SimulationResult& r) {
   const UnitCoupling& coupling = *r.choice.unit;
   std::string text;
-  for (const Connection& c : coupling.connections()) text += "unit: " + arrow(c) + "\n";
+  for (const Connection& c : coupling.connections()) text += "FMU: " + arrow(c) + "\n";
   if (r.coupling.empty()) return text;
   text += fmt::format(
       "FMU: at half the communication step of {:.3g} s results change, of peak, by (estimated "

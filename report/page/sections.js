@@ -94,7 +94,7 @@ const validity = ({ validity }) => !list(validity).length ? null : table([
 
 const timing = ({ timing }) => !list(timing).length ? null : table([
   { head: "Quantity", main: true, cell: r => r.quantity },
-  { head: "State", cell: r => r.limit == null ? DASH : r.meant ? "meant: " + r.meant : chip(r.flagged ? "beyond" : "holds") },
+  { head: "State", cell: r => r.limit == null ? DASH : r.meant ? "meant: " + r.meant : chip(r.flagged ? "exceeded" : "holds") },
   { head: "Value", num: true, cell: r => unit(number(r.value), r.unit) },
   { head: "Limit", num: true, cell: r => r.limit == null ? DASH : number(r.limit) },
   { head: "Chamber angles", cell: r => list(r.angles).map(([a, b]) => `${number(a)} to ${number(b)}°`).join(", ")

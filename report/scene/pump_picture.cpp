@@ -494,7 +494,7 @@ void Picture::draw_block() {
   v.paper(plate == nullptr
               ? std::string("no port plate")
               : fmt::format("lands {}..{} and {}..{} mm{}", mm_text(plate->r1), mm_text(plate->r2),
-                            mm_text(plate->r3), mm_text(plate->r4), plate_fits ? "" : " (beyond)"),
+                            mm_text(plate->r3), mm_text(plate->r4), plate_fits ? "" : " (not drawn: too large)"),
           {left, bottom_ + 42});
 }
 

@@ -53,6 +53,7 @@ def of_markdown(text):
     text = links.CODE.sub(lambda match: "CODE" + "\n" * match[0].count("\n"), text)
     text = re.sub(r"(?<![\\$\w])\$[^$\n]+\$(?!\w)", "EQUATION", text)
     text = re.sub(r"\]\((?:[^()]|\([^()]*\))*\)", "]", text)
+    text = text.replace("<br>", "LINE_BREAK")
     text = re.sub(r"<https?:[^>]*>|https?://\S+|</?[a-zA-Z][^>\n]*>", "", text)
     text = re.sub(r"\{[#.:][^}\n]*\}", "", text)
     paragraphs, current, begin = [], [], 0
@@ -68,7 +69,8 @@ def of_markdown(text):
         if line.startswith("|"):
             close()
             if not re.fullmatch(r"[|:\- ]+", line):
-                paragraphs += [(number, cell.strip()) for cell in re.split(r"(?<!\\)\|", line)[1:] if cell.strip()]
+                cells = re.split(r"(?<!\\)\||LINE_BREAK", line)[1:]
+                paragraphs += [(number, cell.strip()) for cell in cells if cell.strip()]
             continue
         head = re.match(r"(#+ |[*+-] |\d+[.)] |\[\^[^\]]*\]: |!!! \w+ ?|\?\?\? \w+ ?|: )", line)
         if not line or head:
@@ -85,10 +87,10 @@ def of_markdown(text):
 
 
 def of_plain_text(text):
-    """(line, paragraph) of a help text or a docstring: blank lines and lines of options part it."""
+    """(line, paragraph) of a help text or a docstring: blank lines and lines of options part it. Code stands as CODE."""
     paragraphs, current, begin = [], [], 0
     for number, line in enumerate(text.split("\n"), 1):
-        starts = re.match(r"\s{0,4}(-\S.*?|[a-z][\w-]*)\s{2,}(?=\S)", line)
+        starts = re.match(r"\s{0,4}(?:(-\S.*?|[a-z][\w-]*)\s{2,}(?=\S)|-\S.*)", line)
         if not line.strip() or starts:
             if current:
                 paragraphs.append((begin, " ".join(current)))
@@ -97,7 +99,8 @@ def of_plain_text(text):
         if line.strip():
             begin = begin if current else number
             current.append(line.strip())
-    return paragraphs + ([(begin, " ".join(current))] if current else [])
+    paragraphs += [(begin, " ".join(current))] if current else []
+    return [(number, links.CODE.sub("CODE", paragraph)) for number, paragraph in paragraphs]
 
 
 def sentences(paragraph):
@@ -132,8 +135,11 @@ def wrong_words(name, paragraphs, rules):
 
 
 def long_sentences(name, paragraphs, rules):
-    return [f'{name}:{line}: a sentence of {len(words_of(sentence))} words, at most {rules.sentence_words}: "{sentence[:60]}.."'
-            for line, text in paragraphs for sentence in sentences(text) if len(words_of(sentence)) > rules.sentence_words]
+    """On a page of answers as the program prints them, the entries of a list that is parted by semicolons count one by one."""
+    of_answers = name in rules.texts.get("answers", [])
+    parts = [(line, part) for line, text in paragraphs for sentence in sentences(text) for part in (sentence.split("; ") if of_answers else [sentence])]
+    return [f'{name}:{line}: a sentence of {len(words_of(part))} words, at most {rules.sentence_words}: "{part[:60]}.."'
+            for line, part in parts if len(words_of(part)) > rules.sentence_words]
 
 
 def glossary_terms(text, rules):

@@ -678,7 +678,7 @@ Optimisation Optimiser::Implementation::run(const OptimiseWork& work,
     const Output& output = plan.designs.outputs[objectives[k]];
     if (best)
       found.chosen.push_back(
-          {(plan.designs.direction[objectives[k]] < 0 ? "least " : "largest ") + output.name,
+          {(plan.designs.direction[objectives[k]] < 0 ? "lowest " : "largest ") + output.name,
            *best});
   }
   if (problem.objectives > 1 && !front.empty()) {

@@ -252,7 +252,7 @@ std::string timing_text(const std::vector<TimingRow>& rows) {
                         r.limit ? fmt::format("limit {:.4g}", *r.limit) : "",
                         !r.limit          ? ""
                         : !r.flagged      ? "holds"
-                        : r.meant.empty() ? "BEYOND"
+                        : r.meant.empty() ? "EXCEEDED"
                                           : "meant",
                         angles_text(r));
   return text;

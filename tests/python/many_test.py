@@ -43,7 +43,7 @@ class OptimiseTest(ModuleTest):
         self.assertEqual(found.names[:3], ["pump.tilt_deg", "pump.bore_diameter_mm", "peak:Rb1"])
         with open(self.folder / "out/front.csv", newline="") as file:
             self.assertEqual([int(row["design"]) for row in csv.DictReader(file)], list(found.front))
-        self.assertEqual([one.why for one in found.chosen], ["least peak:Rb1", "largest displacement_cm3", "balanced"])
+        self.assertEqual([one.why for one in found.chosen], ["lowest peak:Rb1", "largest displacement_cm3", "balanced"])
         best = found.chosen[0].design
         self.assertEqual(found["peak:Rb1"][best], min(found["peak:Rb1"][row] for row in found.front))
         table = bentaxis.run(found.case(best))

@@ -51,9 +51,9 @@ Table leakage_table() {
                   {.range_words = "> 0 with a gap"}),
            choice("piston_gap_kind", choice_at(PLACE(c.hydraulics->gaps->engaged)),
                   {"land", "engaged"}, "land",
-                  "a land that moves with the piston and has a constant length; or the part of the "
-                  "piston inside the bore: the length is then the minimum, at the outer dead "
-                  "centre, and increases as the piston moves in"),
+                  "land: it moves with the piston and has a constant length; engaged: the part of "
+                  "the piston inside the bore. The length of an engaged part is then the minimum, "
+                  "at the outer dead centre, and increases as the piston moves in"),
            number("eccentricity", "eps", FIELD(c.hydraulics->gaps->eccentricity), kNoUnit, {0, 1},
                   {0.0},
                   "eccentricity of the piston in its bore over the radial gap; 1: it touches"),

@@ -58,9 +58,10 @@ Table load_table() {
            text("file",
                 curve_at(PLACE(c.hydraulics->load->share.file),
                          {.share = [](Case& c) { return &c.hydraulics->load->share; }}),
-                "CSV `time_s,share`, path relative to the case file, at least 4 points, the first "
-                "at a time <= 0: in `bentaxis simulate` the load's size (of a relief valve its "
-                "cracking pressure) is multiplied by it; other commands do not use it; empty: none",
+                "CSV `time_s,share`, path relative to the case file: in `bentaxis simulate` the "
+                "load's size (of a relief valve its cracking pressure) is multiplied by it. At "
+                "least 4 points, the first at a time <= 0. Other commands do not use it. Empty: "
+                "none",
                 {.active = kAnyRelief}),
            number("flow_l_per_min", "Q", FIELD(c.hydraulics->load->flow), kLitresPerMinute,
                   kNotNegative, kRequired,

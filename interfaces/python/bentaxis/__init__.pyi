@@ -228,7 +228,7 @@ class ChosenDesign:
 
     @property
     def why(self) -> str:
-        """"least peak:Rb1", "balanced"."""
+        """"lowest peak:Rb1", "balanced"."""
 
     @property
     def design(self) -> int:
@@ -584,7 +584,7 @@ class PeriodicMotion:
 
 
 class PlausibilityWarning(DoubtWarning):
-    """A case is valid but implausible: a plausibility warning, as listed by Case.doubts()."""
+    """A case is valid but implausible: a plausibility warning, as listed by `Case.doubts()`."""
 
 
 class ReferenceGroup:

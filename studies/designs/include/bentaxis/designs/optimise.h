@@ -85,7 +85,7 @@ struct OptimisePlan {
 OptimisePlan optimise_plan(const OptimiseRequest& request, const Case& base);
 
 /// A design by its number among those evaluated, and what it is chosen for: "balanced",
-/// "least mean:Td_Nm".
+/// "lowest mean:Td_Nm".
 struct ChosenDesign {
   std::string why;
   std::size_t design = 0;
