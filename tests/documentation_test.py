@@ -3,7 +3,9 @@
 
 usage: documentation_test.py [options of unittest]
 """
+import json
 import pathlib
+import re
 import stat
 import sys
 import tempfile
@@ -289,6 +291,27 @@ class ProseTest(unittest.TestCase):
 
 
 class ReferenceTest(unittest.TestCase):
+    def test_every_json_key_is_explained(self):
+        """A key with a value has a meaning; a list of objects, an object and a fixed word are explained by their keys."""
+        schema = json.loads((REPO / "docs/report.schema.json").read_text())
+        page = reference.json_keys_page(REPO)
+        for heading, rows in reference.json_tables(schema).items():
+            for key, kind, _, meaning in rows:
+                with self.subTest(part=heading, key=key):
+                    self.assertTrue(meaning or kind == "object" or "list of" in kind or "each value" in kind or re.fullmatch('`"\\w+"`', kind))
+                    self.assertIn(f"| {key} | {kind} |", page)
+
+    def test_keys_of_a_schema(self):
+        """Every place where a schema can name a key is looked into."""
+        schema = {"$defs": {"part": {"description": "of the part"}}, "required": ["a"], "properties": {
+            "a": {"type": "array", "items": {"properties": {"b": {"type": "number"}}, "required": ["b"]}},
+            "c": {"type": "object", "additionalProperties": {"properties": {"d": {"enum": ["x", "y"]}}}},
+            "e": {"oneOf": [{"properties": {"f": {"$ref": "#/$defs/part"}}}, {"type": "null"}]}, "g": {"type": ["number", "null"], "description": "1|2"}}}
+        self.assertEqual(reference.json_tables(schema), {"The report": [
+            ("`a`", "list of any", "always", ""), ("`a[].b`", "number", "always", ""), ("`c`", "object; each value: any", "", ""),
+            ("`c.*.d`", '`"x"`, `"y"`', "", ""), ("`e`", "any or null", "", ""), ("`e.f`", "[part](#part)", "", "of the part"),
+            ("`g`", "number or null", "", "1\\|2")], "part": []})
+
     def test_every_python_name_has_its_place(self):
         page = reference.python_page(REPO)
         for anchor in ("{#compare}", "{#Case}", "{#Case.update}"):

@@ -95,6 +95,76 @@ def plausibility_page(program):
             + output(program, "schema", "--markdown", "checks"))
 
 
+# ---------------------------------------------------------------- JSON of a report
+
+def described(part, schema):
+    """What the schema says of a key, with the description of the part that it names."""
+    while "description" not in part and "$ref" in part:
+        part = schema["$defs"][part["$ref"].rsplit("/", 1)[-1]]
+    return part.get("description", "")
+
+
+def type_in_words(part):
+    """(type, name of the part it consists of or "")."""
+    if "$ref" in part:
+        name = part["$ref"].rsplit("/", 1)[-1]
+        return f"[{name}](#{name})", name
+    if "const" in part:
+        return f"`{json.dumps(part['const'])}`", ""
+    if "enum" in part:
+        return ", ".join(f"`{json.dumps(word)}`" for word in part["enum"]), ""
+    for kinds in ("oneOf", "anyOf"):
+        if kinds in part:
+            return " or ".join(type_in_words(one)[0] for one in part[kinds]), ""
+    kind = part.get("type", "any")
+    if kind == "array" and isinstance(part.get("items"), dict):
+        return "list of " + type_in_words(part["items"])[0], ""
+    if kind == "object" and isinstance(part.get("additionalProperties"), dict):
+        return "object; each value: " + type_in_words(part["additionalProperties"])[0], ""
+    return " or ".join([kind] if isinstance(kind, str) else kind), ""
+
+
+def keys_of(part, path=""):
+    """(path, part, whether it is always there) of every key below a part of the schema. `[]` stands for the entries of a list, `.*` for any key."""
+    for name, below in part.get("properties", {}).items():
+        yield path + name, below, name in part.get("required", [])
+        yield from keys_of(below, f"{path}{name}.")
+    if isinstance(part.get("items"), dict):
+        yield from keys_of(part["items"], path.removesuffix(".") + "[].")
+    if isinstance(part.get("additionalProperties"), dict):
+        yield from keys_of(part["additionalProperties"], path + "*.")
+    for kinds in ("oneOf", "anyOf", "allOf"):
+        for one in part.get(kinds, []):
+            yield from keys_of(one, path)
+
+
+def json_tables(schema):
+    """{heading: rows (key, type, present, meaning)} of the report and of each part that keys name."""
+    def rows(part):
+        return [(f"`{path}`", type_in_words(below)[0], "always" if always else "", cell(described(below, schema)))
+                for path, below, always in keys_of(part)]
+
+    return {"The report": rows(schema), **{name: rows(part) for name, part in schema["$defs"].items()}}
+
+
+def json_keys_page(root):
+    schema = json.loads((root / "docs/report.schema.json").read_text(encoding="utf-8"))
+    text = (f"{NOTE}# JSON keys\n\nEvery key of a report's JSON, made from [report.schema.json](../report.schema.json). "
+            "Which report has which part: [JSON of a report](../report_json.md).\n\n"
+            "`[]` stands for the entries of a list, `*` for any key. *Present*: always, where the object above it is there; otherwise where it applies. "
+            "A type that is a link has a table below.\n")
+    for heading, rows in json_tables(schema).items():
+        text += f"\n## {heading}\n\n"
+        part = schema["$defs"].get(heading, {})
+        if part.get("description"):
+            text += f"{cell(part['description'])[:1].upper()}{cell(part['description'])[1:].rstrip('.')}.\n\n"
+        if rows:
+            text += "| key | type | present | meaning |\n|---|---|---|---|\n" + "".join("| " + " | ".join(row) + " |\n" for row in rows)
+        else:
+            text += f"{type_in_words(part)[0][:1].upper()}{type_in_words(part)[0][1:]}.\n"
+    return text
+
+
 # ---------------------------------------------------------------- Python
 
 def documented(node):
@@ -237,6 +307,7 @@ def write(root, program, docs):
     pages = command_pages(program)
     pages["case_keys.md"] = case_keys_page(program)
     pages["plausibility_codes.md"] = plausibility_page(program)
+    pages["json_keys.md"] = json_keys_page(root)
     pages["python.md"] = python_page(root)
     pages["parts.md"] = parts_page()
     pages["cpp.md"] = cpp_page(public_headers(root))
