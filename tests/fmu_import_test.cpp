@@ -371,7 +371,7 @@ TEST_F(FmuImportTest, TellsWhyAUnitDoesNotStart) {
       }
     const ImportedUnit other(archive({{"modelDescription.xml", text}, {name, library}}));
     EXPECT_THAT(message_of<InputError>([&] { (void)other.instantiate("it"); }),
-                HasSubstr("the FMU does not start, it says: error: token \"valve-2\""));
+                HasSubstr("the FMU does not start: error: token \"valve-2\""));
   }
 }
 

@@ -309,7 +309,7 @@ TEST(Fmi2, NumbersThatAreNoneAreRefusedAndChangeNothing) {
   for (const double size : {0.0, -1e-3, kNan, kInfinity, 0.2})
     EXPECT_EQ(unit.f.fmi2DoStep(unit.it, 0, size, 1), fmi2Error) << size;
   EXPECT_EQ(unit.f.fmi2DoStep(unit.it, 0.05, 1e-3, 1), fmi2Error);
-  EXPECT_TRUE(unit.messages.has("begins at 0.05 s, the pump stands at 0 s"));
+  EXPECT_TRUE(unit.messages.has("begins at 0.05 s, the pump is at 0 s"));
   EXPECT_EQ(unit.f.fmi2DoStep(unit.it, 0, 0.1, 1), fmi2OK) << unit.messages.text;
 }
 

@@ -112,7 +112,7 @@ TEST_F(Identify, WordsNameWhatIsDeterminedOnlyTogether) {
                "through their product"));
   const DataModel nothing(
       base, data_of(base, {"pressure.delivery_bar=250:300", "block.mass_kg=1:2"}, {torque}));
-  EXPECT_THAT(fit(nothing).information.words, Contains("the data say nothing of block.mass_kg"));
+  EXPECT_THAT(fit(nothing).information.words, Contains("the data do not determine block.mass_kg"));
 }
 
 // What is said where the data notice everything but moves along one direction (in the unknowns'

@@ -49,7 +49,7 @@ class SimulateFmuTest(FmuTest):
         return json.loads((self.folder / "out" / "report.json").read_text())
 
     def section(self):
-        found = [s for s in self.report()["runs"] if s["title"] == "Coupling to a unit"]
+        found = [s for s in self.report()["runs"] if s["title"] == "Coupling to an FMU"]
         self.assertEqual(len(found), 1)
         return found[0]
 
@@ -63,7 +63,7 @@ class SimulateFmuTest(FmuTest):
             result = self.simulate("--fmu", self.unit("rotor", version), "--communication-step", "1e-4",
                                    "--fmu-set", "torque=330")
             self.assertIn("The trajectories agree", result.out)
-            self.assertIn("unit: drive_speed (1/min) -> drive_speed (rad/s), by equal names", result.out)
+            self.assertIn("FMU: drive_speed (1/min) -> drive_speed (rad/s), by equal names", result.out)
             rows = self.rows("unit_analytic.csv")
             self.assertEqual(len(rows), 40)  # points before the end
             self.assertEqual(list(rows[0]), ["time_s", "drive_speed (1/min)", "drive_acceleration (rad/s2)", "Td_z1_Nm (N.m)"])

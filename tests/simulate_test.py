@@ -188,7 +188,7 @@ class RestTest(SimulateTest):
         energy = {row[0]: row[2:] for row in runs["Energy from the drive to the load"]["table"]["rows"]}
         self.assertGreater(energy["work of the drive"][0], 0.01)
         for model in (0, 1):
-            left = energy["left over: oil"][model]
+            left = energy["residual: oil"][model]
             self.assertLess(abs(left), 1e-6 * energy["work of the drive"][model])
         self.assertEqual({c["model"] for c in report["checks"] if c["name"].startswith("mass of the oil")}, {"analytic", "multibody"})
         groups = [row[0] for row in runs["Difference of the two trajectories"]["table"]["rows"]]

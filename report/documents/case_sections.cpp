@@ -53,7 +53,7 @@ std::vector<report::CommonInput> transfer_inputs(const Case& the_case, bool moti
            "ideal: no friction, no play, no mass of the cross; both take the arms' phase from the "
            "case. The analytic model has angle and couple in closed form. The multibody model "
            "keeps the arms at right angles, and Simbody finds motion and couple. Given states are "
-           "held to one law for both",
+           "compared with one law for both",
            "high-precision curves; a cross between two forks (universal mobilizer of Simbody); the "
            "couple does no work; free bodies of shaft and block"});
       break;

@@ -47,7 +47,7 @@ report::Section methods_section(const DisplacementStudy& study) {
   report::Section section{
       "Derived displacement",
       "The displacement as a test rig derives it from the flows of this pump, against the "
-      "geometric displacement, which the model knows. ISO 8426: flow over speed at zero pressure "
+      "geometric displacement of the model. ISO 8426: flow over speed at zero pressure "
       "difference, by a line over the pressure at one speed (here the highest). Toet: slope of the "
       "flow over the speed at each pressure, then its value at zero pressure difference. Wilson: V "
       "of q = V n - k p, all points at once. Zero-pressure line: flow at zero pressure difference "

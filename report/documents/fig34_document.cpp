@@ -130,7 +130,7 @@ Lines about(const Fig34Study& s, bool drag) {
     if (s.points[i].drag == drag && s.curves[i].done() && s.curves[i].sign_changes == rigid)
       ++as_rigid;
   lines.push_back(rigid == 0 ? fmt::format("{} never change sign, as rigid teeth.", as_rigid)
-                             : fmt::format("{} change it as often as rigid teeth do, {:g} times a "
+                             : fmt::format("{} change it as often as rigid teeth, {:g} times a "
                                            "turn.",
                                            as_rigid, rigid));
   if (c.failed > 0) lines.push_back(fmt::format("{} could not be simulated.", c.failed));
@@ -181,7 +181,7 @@ std::string headline(const Fig34Study& s) {
   const Count c = count(s, false);
   std::string text = fmt::format(
       "Without Cc {} of {} contact laws stay inside the printed axes and reverse as printed{}",
-      c.both, c.all, c.both > 1 ? ": the figure does not tell which" : "");
+      c.both, c.all, c.both > 1 ? ": the figure does not show which" : "");
   if (has_drag(s)) {
     const Count d = count(s, true);
     text += fmt::format("; with Cc {} of {}", d.both, d.all);

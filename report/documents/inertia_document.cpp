@@ -314,10 +314,11 @@ std::string headline(const InertiaStudy& s) {
       largest = &error;
   }
   std::string text =
-      missed.empty() ? "Two masses will do" : fmt::format("Two masses will not do for {}", missed);
+      missed.empty() ? "Two point masses are accurate enough"
+                     : fmt::format("Two point masses are not accurate enough for {}", missed);
   if (largest != nullptr)
-    text += fmt::format("{}: {} is off by {}, the others by less",
-                        missed.empty() ? "" : ". They do for the rest", largest->group,
+    text += fmt::format("{}: {} is off by {}, the rest by less",
+                        missed.empty() ? "" : ". They are for the others", largest->group,
                         of_peak(*largest));
   text += fmt::format(". The limit is {:g} %.", 100 * kTwoMassesDo);
   if (!s.agrees())

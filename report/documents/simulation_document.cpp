@@ -195,8 +195,8 @@ report::Section work_section(const SimulationResult& r) {
                                          {std::string("work of the drive, J")},
                                          {std::string("kinetic energy gained, J")},
                                          {std::string("energy in teeth and coupling gained, J")},
-                                         {std::string("left over at the end, J")},
-                                         {std::string("left over at any row, J")},
+                                         {std::string("residual at the end, J")},
+                                         {std::string("largest residual of any row, J")},
                                          {std::string("worst error of a constraint, m")}};
   for (const auto& [name, run] : runs_of(r)) {
     section.table.columns.push_back(name);
@@ -248,8 +248,8 @@ report::Section energy_section(const SimulationResult& r) {
     for (const OilEnergy& e : oil.energies)
       if (e.place.use != PowerUse::source)
         put(row++, e.place.name, hydraulics::name_of(e.place.use), e.energy);
-    put(row++, "left over: mechanics", "must vanish", t.work_residual);
-    put(row++, "left over: oil", "must vanish", oil.energy_residual);
+    put(row++, "residual: mechanics", "must vanish", t.work_residual);
+    put(row++, "residual: oil", "must vanish", oil.energy_residual);
     put(row++, "residual between pistons and oil", "must vanish", oil.exchange_residual);
     put(row++, "residual of the mass of the oil, kg", "must vanish", oil.mass_residual);
   }
@@ -426,7 +426,7 @@ std::vector<report::Warning> doubts_of(const SimulationResult& r) {
   if (usual > 0 && std::abs(fastest) > kOverspeed * usual)
     warnings.push_back(
         {"course-overspeed",
-         fmt::format("the shaft gets to {:.5g} rpm at {:.4g} s, more than {:g} times the speed of "
+         fmt::format("the shaft reaches {:.5g} rpm at {:.4g} s, more than {:g} times the speed of "
                      "[operation]: is an inertia or a load missing?",
                      fastest, fastest_at, kOverspeed)});
   return warnings;
@@ -678,7 +678,7 @@ std::string simulation_text(const SimulationResult& r) {
   }
   for (const auto& [name, run] : runs_of(r)) {
     const TrajectoryRecord& t = run->record;
-    text += fmt::format("{}: {:.3g} s, {} steps, {} evaluations; work left over {:.1e} J", name,
+    text += fmt::format("{}: {:.3g} s, {} steps, {} evaluations; residual of the work balance {:.1e} J", name,
                         t.seconds, t.steps, t.evaluations, t.worst_work_residual);
     if (compliant(r)) {
       const auto touches = std::count_if(t.events.begin(), t.events.end(),
@@ -693,7 +693,7 @@ std::string simulation_text(const SimulationResult& r) {
   if (r.oil_follows)
     for (const auto& [name, run] : runs_of(r)) {
       const OilHistory& oil = *run->oil;
-      text += fmt::format("{}: left over of the oil's energy {:.1e} J, of its mass {:.1e} kg\n",
+      text += fmt::format("{}: residual of the oil's energy {:.1e} J, of its mass {:.1e} kg\n",
                           name, oil.worst_energy_residual, oil.worst_mass_residual);
     }
   if (is_computed(r.integration_change))

@@ -242,15 +242,15 @@ std::vector<std::string> answers_of(const TradeoffStudy& study) {
         fastest = &run;
     if (fastest != nullptr)
       answers.push_back(fmt::format(
-          "{} pressure: fastest of all is {}: {} a turn, right to {:.0e} of peak.", pressure.name,
+          "{} pressure: fastest of all is {}: {} a turn, error {:.0e} of peak.", pressure.name,
           name_of_run(*fastest), time_text(fastest->seconds_per_turn), fastest->error.worst));
     for (const int digits : {4, 8}) {
       const TradeoffRun* run = fastest_within(pressure.runs, std::pow(10.0, -digits));
       answers.push_back(
           run == nullptr
-              ? fmt::format("{} pressure: no integrated run is right to 1e-{} of peak.",
+              ? fmt::format("{} pressure: no integrated run has an error below 1e-{} of peak.",
                             pressure.name, digits)
-              : fmt::format("{} pressure, integrated in time, right to 1e-{} of peak: {} at "
+              : fmt::format("{} pressure, integrated in time, error below 1e-{} of peak: {} at "
                             "accuracy {}, {} a turn.",
                             pressure.name, digits, run->variant, number_text(*run->accuracy),
                             time_text(run->seconds_per_turn)));

@@ -55,7 +55,7 @@ class Words {
     for (Index i = 0; i < n; ++i)
       if (open_(i, i) >= kOpen) alone_.push_back(i);
     if (!alone_.empty()) {
-      std::string text = "the data say nothing of ";
+      std::string text = "the data do not determine ";
       for (std::size_t k = 0; k < alone_.size(); ++k)
         text += (k == 0 ? "" : ", ") + unknowns_[static_cast<std::size_t>(alone_[k])].name();
       lines_.push_back(text);

@@ -461,7 +461,8 @@ class Guesser {
     double roundest_step = -1;
     for (const char* sequence : {"ZXZ", "XYZ"}) {
       const auto turned = [&](const std::vector<double>& angles) {
-        const std::array<double, 3> three = {angles[0], angles[1], angles[2]};
+        // Adding 0 makes 0 of -0, which is printed.
+        const std::array<double, 3> three = {angles[0] + 0.0, angles[1] + 0.0, angles[2] + 0.0};
         return FrameChoice{exact.frame.axes_of, compare::turned_axes(sequence, three), sequence,
                            three};
       };

@@ -204,7 +204,7 @@ class ProcessSlave : public Slave {
 
   static std::string said(const Returned& returned) {
     const std::string words = said_last(returned.log);
-    return words.empty() ? " and says nothing" : ", it says: " + words;
+    return words.empty() ? " and gives no reason" : ": " + words;
   }
 
   [[noreturn]] void fail(const std::string& what, const std::string& why) {

@@ -204,7 +204,7 @@ Status Instance::step(double time, double size) {
   require_finite(size, "the size of the step");
   if (!(size > 0)) throw Refused("the size of the step " + number_text(size) + " s must be > 0");
   if (!same_time(time, now_))
-    throw Refused("the step begins at " + number_text(time) + " s, the pump stands at " +
+    throw Refused("the step begins at " + number_text(time) + " s, the pump is at " +
                   number_text(now_) + " s");
   const double end = time + size;
   if (stops_ && end > stop_time_ && !same_time(end, stop_time_))
