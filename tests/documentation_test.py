@@ -11,6 +11,8 @@ import sys
 import tempfile
 import unittest
 
+import yaml
+
 REPO = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(REPO / "scripts"))
 sys.dont_write_bytecode = True
@@ -288,6 +290,45 @@ class ProseTest(unittest.TestCase):
             file.write_text((REPO / "scripts/prose_rules.toml").read_text() + '\n[[exception]]\npage = "x"\npattern = "y"\nreason = ""\n')
             with self.assertRaises(ValueError):
                 prose.Rules(file)
+
+
+def menu_paths():
+    """{page: the entries of the menu that lead to it}"""
+    def paths(node, above):
+        if isinstance(node, str):
+            yield node, above
+        for name, below in node.items() if isinstance(node, dict) else ():
+            yield from paths(below, [*above, name])
+        for below in node if isinstance(node, list) else ():
+            yield from paths(below, above)
+
+    nav = yaml.load((REPO / "mkdocs.yml").read_text(encoding="utf-8"), pages._Loader)["nav"]
+    return dict(paths(nav, []))
+
+
+class FindingAnswersTest(unittest.TestCase):
+    def test_click_paths(self):
+        """A path is that of the menu, and then the heading that its link leads to."""
+        menu = menu_paths()
+        rows = re.findall(r"^\| (\d+) \|[^|]*\|([^|]*)\|", (REPO / "docs/finding_answers.md").read_text(encoding="utf-8"), re.MULTILINE)
+        self.assertEqual([int(number) for number, _ in rows], list(range(1, 26)))
+        for number, cell in rows:
+            found = re.findall(r"\[((?:`[^`]*`|[^\]`])+)\]\(([^)#]*)(?:#([^)]*))?\)", cell)
+            self.assertTrue(found, number)
+            for words, page, anchor in found:
+                with self.subTest(question=number, path=words):
+                    path = words.split(" › ")
+                    above = menu[f"docs/{page}"]
+                    self.assertEqual(path[:len(above)], above)
+                    self.assertLessEqual(len(path), len(above) + 1)
+                    if len(path) > len(above):
+                        self.assertTrue(anchor)
+                    if anchor:
+                        headings = re.findall(r"^#+ (.*)$", (REPO / "docs" / page).read_text(encoding="utf-8"), re.MULTILINE)
+                        of_anchor = [head for head in headings if re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-") == anchor]
+                        self.assertEqual(len(of_anchor), 1, headings)
+                        if len(path) > len(above):
+                            self.assertIn(path[-1], of_anchor[0])
 
 
 class ReferenceTest(unittest.TestCase):

@@ -898,8 +898,10 @@ TEST(MappingRecords, OneFrameAtAnyAngle) {
 
 TEST(MappingRecords, AnglesOfZeroHaveNoSign) {
   for (const double deg : {30.0, -30.0}) {
-    for (const std::array<double, 3> turn : {std::array{deg, 0.0, 0.0}, std::array{0.0, 0.0, deg}}) {
-      const MappingGuess found = guess(record(1, 40, in_frame({compare::turned_axes("XYZ", turn)})));
+    for (const std::array<double, 3> turn :
+         {std::array{deg, 0.0, 0.0}, std::array{0.0, 0.0, deg}}) {
+      const MappingGuess found =
+          guess(record(1, 40, in_frame({compare::turned_axes("XYZ", turn)})));
       for (const double angle : found.euler_deg) EXPECT_FALSE(angle == 0 && std::signbit(angle));
       EXPECT_THAT(found.curve.frame.words, testing::HasSubstr("turned by"));
       EXPECT_THAT(found.curve.frame.words, testing::Not(testing::HasSubstr("-0,")));

@@ -1,6 +1,7 @@
 // Numbers that nobody here wrote, against teeth and integrators (docs/external_benchmarks.md).
 //
-//   judges      exit status 1 where a tolerance is exceeded that docs/external_benchmarks.md does not know of
+//   judges      exit status 1 where a tolerance is exceeded that docs/external_benchmarks.md does
+//   not know of
 #include <cmath>
 #include <cstdio>
 #include <exception>

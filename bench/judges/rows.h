@@ -1,4 +1,5 @@
-// Rows of the judges: what was found, what was expected, the tolerance that docs/external_benchmarks.md states.
+// Rows of the judges: what was found, what was expected, the tolerance that
+// docs/external_benchmarks.md states.
 #pragma once
 
 #include <string>
@@ -10,7 +11,8 @@ struct Row {
   std::string what;
   double found = 0, expected = 0, tolerance = 0;
   bool relative = true;
-  /// Fails, for a reason that docs/external_benchmarks.md gives; the tolerance stays, and passing would be news.
+  /// Fails, for a reason that docs/external_benchmarks.md gives; the tolerance stays, and passing
+  /// would be news.
   bool known_to_fail = false;
 
   double error() const;

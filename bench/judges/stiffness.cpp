@@ -120,7 +120,8 @@ class Mesh {
   double both_, pitch_;
 };
 
-/// The same with the conventions of the program that the numbers come from (docs/external_benchmarks.md).
+/// The same with the conventions of the program that the numbers come from
+/// (docs/external_benchmarks.md).
 class TheirMesh {
  public:
   TheirMesh(const Mesh& mesh, const Gear& gear) : mesh_(mesh), gear_(gear) {

@@ -48,8 +48,8 @@ report::Section coupling_section(const SimulationResult& r) {
       "results shown.";
   section.facts = {
       {"FMU", fmt::format("{}: {}, FMI {}.0{}", coupling.unit().file().filename().string(),
-                           unit.model_name, unit.version,
-                           unit.tool.empty() ? "" : ", made by " + unit.tool)},
+                          unit.model_name, unit.version,
+                          unit.tool.empty() ? "" : ", made by " + unit.tool)},
       {"communication step", fmt::format("{:.6g} s", coupling.step())},
       {"what turns the shaft", drive_in_words(coupling)}};
   for (const auto& [variable, value] : coupling.parameters())

@@ -59,7 +59,8 @@ std::string known_text(const DataModel& model, const Datum& datum) {
 std::string given_text(const Datum& datum) {
   if (datum.curve)
     return fmt::format("{} points +- {:.3g}", datum.curve->values.size(), datum.uncertainty);
-  if (datum.value) return fmt::format("{:.6g} +- {:.2g}", *datum.value, datum.uncertainty);
+  if (datum.value)
+    return fmt::format("{:.6g} +- {:g}", *datum.value, rounded(datum.uncertainty, 2));
   if (!std::isfinite(datum.low)) return fmt::format("below {:g}", datum.high);
   if (!std::isfinite(datum.high)) return fmt::format("above {:g}", datum.low);
   return fmt::format("{:g} to {:g}", datum.low, datum.high);
@@ -134,8 +135,8 @@ std::pair<std::string, std::string> worst_values(const DataModel& model,
   const Datum& datum = model.data().data[*worst.datum];
   const double of_model = result.numbers[model.place_of(*worst.datum) + worst.number];
   const std::string given = datum.curve
-                                ? fmt::format("{:.6g} +- {:.2g}", datum.curve->values[worst.number],
-                                              datum.curve->uncertainties[worst.number])
+                                ? fmt::format("{:.6g} +- {:g}", datum.curve->values[worst.number],
+                                              rounded(datum.curve->uncertainties[worst.number], 2))
                                 : given_text(datum);
   return {given, fmt::format("{:.6g}", of_model)};
 }

@@ -313,9 +313,9 @@ std::string headline(const InertiaStudy& s) {
     else if (largest == nullptr || error.fraction() > largest->fraction())
       largest = &error;
   }
-  std::string text =
-      missed.empty() ? "Two point masses are accurate enough"
-                     : fmt::format("Two point masses are not accurate enough for {}", missed);
+  std::string text = missed.empty()
+                         ? "Two point masses are accurate enough"
+                         : fmt::format("Two point masses are not accurate enough for {}", missed);
   if (largest != nullptr)
     text += fmt::format("{}: {} is off by {}, the rest by less",
                         missed.empty() ? "" : ". They are for the others", largest->group,

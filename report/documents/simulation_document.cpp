@@ -678,8 +678,9 @@ std::string simulation_text(const SimulationResult& r) {
   }
   for (const auto& [name, run] : runs_of(r)) {
     const TrajectoryRecord& t = run->record;
-    text += fmt::format("{}: {:.3g} s, {} steps, {} evaluations; residual of the work balance {:.1e} J", name,
-                        t.seconds, t.steps, t.evaluations, t.worst_work_residual);
+    text +=
+        fmt::format("{}: {:.3g} s, {} steps, {} evaluations; residual of the work balance {:.1e} J",
+                    name, t.seconds, t.steps, t.evaluations, t.worst_work_residual);
     if (compliant(r)) {
       const auto touches = std::count_if(t.events.begin(), t.events.end(),
                                          [](const ToothEvent& event) { return event.touch; });

@@ -96,7 +96,7 @@ std::string digits(double value, double interval) {
   return fmt::format("{:.{}g}", value, std::clamp(std::max(count, whole), 2, 15));
 }
 std::string with_error(double value, double error) {
-  return digits(value, error) + fmt::format(" +- {:.2g}", error);
+  return digits(value, error) + fmt::format(" +- {:g}", rounded(error, 2));
 }
 std::string with_interval(const Estimate& e) {
   const double width = e.high - e.low;

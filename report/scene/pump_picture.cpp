@@ -491,10 +491,10 @@ void Picture::draw_block() {
   v.paper(fmt::format("bores Dpi {} mm on Rd {} mm", mm_text(g_.bore_diameter),
                       mm_text(g_.bore_circle_radius)),
           {left, bottom_ + 24});
-  v.paper(plate == nullptr
-              ? std::string("no port plate")
-              : fmt::format("lands {}..{} and {}..{} mm{}", mm_text(plate->r1), mm_text(plate->r2),
-                            mm_text(plate->r3), mm_text(plate->r4), plate_fits ? "" : " (not drawn: too large)"),
+  v.paper(plate == nullptr ? std::string("no port plate")
+                           : fmt::format("lands {}..{} and {}..{} mm{}", mm_text(plate->r1),
+                                         mm_text(plate->r2), mm_text(plate->r3), mm_text(plate->r4),
+                                         plate_fits ? "" : " (not drawn: too large)"),
           {left, bottom_ + 42});
 }
 

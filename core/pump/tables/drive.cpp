@@ -35,12 +35,11 @@ Table drive_table() {
                "kind", FIELD(c.drive->kind), {"speed", "torque", "motor"}, "speed",
                "speed: the speed of the shaft is given; torque: a torque acts on it; motor: a "
                "rotor drives it through a coupling, Td = K_c (phi - theta) + D_c (phi' - theta')"),
-           text(
-               "file",
-               curve_at(PLACE(c.drive->curve.file), {.drive = [](Case& c) { return &*c.drive; }}),
-               "CSV `time_s,speed_rpm` or `time_s,torque_Nm`, path relative to the case file: the "
-               "speed or the torque over time instead. At least 4 points, the first at a time "
-               "<= 0. Of a motor `speed_rpm,torque_Nm`: its torque over its speed. Empty: none"),
+           text("file",
+                curve_at(PLACE(c.drive->curve.file), {.drive = [](Case& c) { return &*c.drive; }}),
+                "CSV `time_s,speed_rpm` or `time_s,torque_Nm`, path relative to the case file: the "
+                "speed or the torque over time instead. At least 4 points, the first at a time "
+                "<= 0. Of a motor `speed_rpm,torque_Nm`: its torque over its speed. Empty: none"),
            number(
                "torque_Nm", "T0", FIELD(c.drive->torque), {"Nm"}, kAny,
                {.computed = [](const Case& c) -> std::optional<Value> {
