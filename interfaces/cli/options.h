@@ -19,12 +19,12 @@ namespace bentaxis::cli {
 struct CaseOption {
   std::string file;
   std::vector<std::string> changes;  ///< TABLE.KEY=VALUE
-  bool strict = false;               ///< doubtful values are errors
+  bool strict = false;               ///< implausible values are errors
 
   /// The case as if its file said so. Says on standard error what pump it is, and what of it is
-  /// doubtful. @throws InputError, with `strict` for doubtful values too
+  /// doubtful. @throws InputError, with `strict` for implausible values too
   Case read() const;
-  /// With `strict`, says what is doubtful on standard error. @param what  the end of the refusal
+  /// With `strict`, prints warnings on standard error. @param what  the end of the refusal
   /// @throws InputError then
   void refuse(const std::vector<report::Warning>& doubts, const std::string& what) const;
   void refuse_timing(const std::vector<report::Warning>& timing) const;

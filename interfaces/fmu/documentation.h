@@ -7,7 +7,7 @@
 
 namespace bentaxis::fmu {
 
-/// HTML: what the unit is, its inputs, parameters and outputs with their units.
+/// HTML: what the FMU is, its inputs, parameters and outputs with their units.
 std::string documentation_page(const Description& description, const UnitOptions& options);
 
 }  // namespace bentaxis::fmu

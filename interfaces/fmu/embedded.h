@@ -5,7 +5,7 @@
 
 namespace bentaxis::fmu {
 
-/// The shared library of a unit, for Linux on x86-64.
+/// The shared library of an FMU, for Linux on x86-64.
 std::string embedded_library();
 /// The least version of glibc that has all symbols the library needs: "2.35".
 std::string needed_glibc();

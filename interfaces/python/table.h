@@ -30,7 +30,7 @@ struct Table {
   std::size_t first_of_block = 0;  ///< columns from here on lie in one block of memory
   std::function<std::string()> csv;
   std::shared_ptr<const void> owner;
-  std::vector<std::string> warnings = {};  ///< what is doubtful about the case or the results
+  std::vector<std::string> warnings = {};  ///< warnings about the case or the results
 
   /// @throws pybind11::key_error
   const Column& column(const std::string& wanted) const;

@@ -38,7 +38,7 @@ class BodyLoads {
 
   /// With reactions of a row that was found before.
   /// @param values  a row that Model::evaluate() filled at this instant, SI
-  /// @param teeth   what the teeth do there; read where the contact is theirs
+  /// @param teeth   the state of the teeth there; read where contact is resolved
   std::vector<BodyLoad> of_row(const Instant& instant, const std::vector<double>& values,
                                const TeethAction& teeth) const;
 

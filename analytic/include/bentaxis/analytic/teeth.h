@@ -37,7 +37,7 @@ class BevelTeeth {
 
   const BevelGeometry& geometry() const;
 
-  /// What the teeth do to each other. Allocates nothing.
+  /// Contacts and forces of the teeth. Allocates nothing.
   /// @param theta        rad, of the shaft
   /// @param shaft_speed  rad/s
   /// @param lag          of the block's teeth: they stand at theta less its angle

@@ -95,7 +95,7 @@ struct Options {
 };
 
 /// Minimum scale of a group, as a share of the largest load of the case. A group whose peak is
-/// smaller is what is left of loads that cancel, and carries their error: judged over its own peak
+/// smaller is what is left of loads that cancel, and carries their error: scaled by its own peak
 /// the round-off of the loads would differ. With the tolerance of two exact models, 1e-9, this
 /// allows 1e-12 of the loads: five times the largest error of either model against curves of 50
 /// digits (2e-13, docs/trust.md). A tolerance that a user names scales it alike.

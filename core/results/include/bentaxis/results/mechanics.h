@@ -58,7 +58,7 @@ class Mechanics {
   /// below 0: the gap; and its rate, m/s. Of teeth the largest of any pair and slice.
   virtual double approach(double time, const MotionVector& y, int flank) const = 0;
   virtual double approach_rate(double time, const MotionVector& y, int flank) const = 0;
-  /// What teeth do to each other there; false where the contact is not that of teeth.
+  /// State of the teeth there; false where contact is not resolved.
   virtual bool teeth(double /*time*/, const MotionVector& /*y*/, TeethAction& /*action*/) {
     return false;
   }

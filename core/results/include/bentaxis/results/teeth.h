@@ -34,7 +34,7 @@ inline constexpr std::array<const char*, 2 * kPairsPerFlank> kPairNames = {
 /// Contact ratios above it are refused: more pairs than kPairsPerFlank might carry.
 inline constexpr double kLargestContactRatio = 2.5;
 
-/// All that the teeth do.
+/// State of all teeth.
 struct TeethAction {
   double lag = 0;  ///< theta - psi of the teeth, rad
   /// By flank (+1, then -1) and, within it, by the shaft's tooth: nearest to O4 (the tooth i for
@@ -45,7 +45,7 @@ struct TeethAction {
   std::array<double, 3> moment = {};  ///< on the block about O2, S1, Nm; likewise
 };
 
-/// Table of what teeth do over a turn: lag_urad; transmission_error_um, the lag along the line of
+/// Table of the teeth over a turn: lag_urad; transmission_error_um, the lag along the line of
 /// action at O4; plus_force_N, minus_force_N by flank; and per pair and flank shaft tooth, force,
 /// share of the flank's force, point and normal.
 ResultTable teeth_table(const std::string& model);

@@ -11,7 +11,7 @@
 namespace bentaxis::fmu {
 
 enum class Version { fmi2, fmi3 };
-/// What turns the shaft of a unit.
+/// What turns the shaft of an FMU.
 enum class Drive {
   speed,       ///< inputs drive_speed, drive_acceleration
   torque,      ///< input drive_torque
@@ -31,7 +31,7 @@ struct UnitOptions {
 /// @throws InputError where the case cannot be simulated so
 std::string unit_archive(const Case& the_case, const UnitOptions& options);
 
-/// What such a unit has.
+/// What such an FMU has.
 struct UnitSummary {
   std::vector<std::string> inputs;  ///< by name
   std::size_t outputs = 0, states = 0, indicators = 0, parameters = 0;

@@ -9,7 +9,7 @@
 
 namespace bentaxis::study {
 
-/// Puts the case, what is doubtful about it and its pictures into a report, and a warning for each
+/// Puts the case, its plausibility warnings and its pictures into a report, and a warning for each
 /// part of the description that could not be computed.
 /// @param scene  the pump in space; otherwise that of the description's turn, where there is one
 void put_description(report::Document& document, const CaseDescription& description,

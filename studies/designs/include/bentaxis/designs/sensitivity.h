@@ -39,7 +39,7 @@ struct Sensitivities {
   std::vector<Output> outputs;
   std::vector<double> at;      ///< of the variables
   std::vector<double> values;  ///< of the outputs
-  /// What differences of outputs are judged by: the peak over the turn of what a statistic is of;
+  /// The scale of differences of outputs: the peak over the turn of what a statistic is of;
   /// of others the magnitude.
   std::vector<double> scales;
   std::vector<std::vector<Derivative>> derivatives;  ///< by output, then variable

@@ -86,7 +86,7 @@ class SweepParts {
   SweepRecord record_;
 };
 
-/// The sweep that the blocks in a folder are of, and its record as it stands there.
+/// The sweep that the blocks in a folder are of, and its stored record.
 /// @throws InputError where there is none
 std::pair<Sweep, SweepRecord> sweep_in(const std::filesystem::path& folder);
 

@@ -19,11 +19,11 @@ struct UnitChoice {
   std::filesystem::path file;                ///< the .fmu
   std::vector<std::string> connect;          ///< "A=B": A gets B; equal names need none
   std::optional<double> step;                ///< s, between communication points
-  std::vector<std::string> parameters = {};  ///< of the unit: "NAME=VALUE", in its own units
-  fmu::Limits limits = {};                   ///< of what the unit may do
+  std::vector<std::string> parameters = {};  ///< of the FMU: "NAME=VALUE", in its own units
+  fmu::Limits limits = {};                   ///< of what the FMU may do
 };
 
-/// A value that goes from the unit to the pump or back.
+/// A value that goes from the FMU to the pump or back.
 struct Connection {
   bool to_pump = true;
   std::string pump;        ///< its input ("drive_torque", ..) or a column of its tables
@@ -33,47 +33,47 @@ struct Connection {
   bool automatic = true;   ///< by equal names
 };
 
-/// What the unit can act on: names and units, SI.
+/// What the FMU can act on: names and units, SI.
 struct PumpInput {
   const char* name;
   const char* unit;
 };
 const std::vector<PumpInput>& pump_inputs();
 
-/// What was exchanged at the communication points of a simulation, in the unit's own units.
+/// What was exchanged at the communication points of a simulation, in the FMU's own units.
 struct UnitRecord {
-  std::vector<std::string> columns;  ///< "time_s", then variables of the unit: "level (m)"
+  std::vector<std::string> columns;  ///< "time_s", then variables of the FMU: "level (m)"
   std::vector<double> values;        ///< row by row
   std::string csv() const;
 };
 
-/// A unit and how it is connected to the pump of a case. Each simulation gets an instance of its
+/// An FMU and how it is connected to the pump of a case. Each simulation gets an instance of its
 /// own.
 class UnitCoupling {
  public:
   /// @param the_case     as its file has it
   /// @param oil_follows  whether its oil is simulated too
-  /// @throws InputError where the unit cannot be run, and naming the connection where the pump or
-  ///         the unit has no such variable, units do not fit, or it is not clear what is meant
+  /// @throws InputError where the FMU cannot be run, and naming the connection where the pump or
+  ///         the FMU has no such variable, units do not fit, or it is not clear what is meant
   UnitCoupling(const UnitChoice& choice, const Case& the_case, bool oil_follows);
   ~UnitCoupling();
 
-  /// The case as the unit drives it: [drive] kind as the unit's outputs want it, its start
+  /// The case as the FMU drives it: [drive] kind as the FMU's outputs want it, its start
   /// likewise.
   const Case& driven() const { return driven_; }
   /// s, between communication points: a whole part of the duration, at most what was chosen.
   double step() const { return step_; }
   const std::vector<Connection>& connections() const { return connections_; }
   const fmu::ImportedUnit& unit() const { return *unit_; }
-  /// Parameters of the unit that were set, with their values in its own units.
+  /// Parameters of the FMU that were set, with their values in its own units.
   const std::vector<std::pair<fmu::UnitVariable, double>>& parameters() const {
     return parameters_;
   }
-  /// Inputs and outputs of the unit that are not connected.
+  /// Inputs and outputs of the FMU that are not connected.
   std::vector<std::string> loose_inputs() const;
   std::vector<std::string> loose_outputs() const;
 
-  /// A new instance of the unit as the partner of a simulation. What it says is added to log().
+  /// A new instance of the FMU as the partner of a simulation. What it says is added to log().
   /// @param parts   of the communication step that are stepped one by one
   /// @param record  if given: filled as the simulation goes on
   coupled::Exchange exchange(int parts = 1, std::shared_ptr<UnitRecord> record = nullptr) const;

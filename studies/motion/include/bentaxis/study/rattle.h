@@ -23,7 +23,7 @@ inline constexpr double kRepeats = 1e-3;
 inline constexpr int kLongestPeriod = 4;  ///< turns, of a motion that is seen to repeat itself
 /// Turns without separation after which nothing more is waited for.
 inline constexpr int kTurnsInTouch = 5;
-inline constexpr int kPartsOfTurn = 40;  ///< of a turn by Simbody: it is judged part by part
+inline constexpr int kPartsOfTurn = 40;  ///< of a turn by Simbody: it is compared part by part
 /// Two steady states differ in class, or in the largest force of a turn by this share of it.
 inline constexpr double kOtherForce = 0.1;
 
@@ -42,7 +42,7 @@ struct RattleOptions {
   int check = 0;                     ///< points to be computed by Simbody too
 };
 
-/// What the teeth do at a speed and a pressure.
+/// Motion of the teeth at a speed and a pressure.
 struct RattlePoint {
   RattleClass kind = RattleClass::carries;
   double apart = 0, plus = 0, minus = 0;  ///< shares of the time: on no flank, on either one
@@ -83,10 +83,10 @@ struct RattleCheck {
   std::size_t row = 0, speed = 0;
   int parts = 0;          ///< of turns, kPartsOfTurn each, that were computed
   int judged = 0;         ///< of them, until a disturbance has grown too much
-  double growth = 1;      ///< of a disturbance, within what is judged
-  double difference = 0;  ///< of the largest force, of the larger, within what is judged
+  double growth = 1;      ///< of a disturbance, within the compared time
+  double difference = 0;  ///< of the largest force, of the larger, within the compared time
   double allowed = 0;     ///< likewise
-  RattleClass analytic{}, multibody{};                 ///< within what is judged
+  RattleClass analytic{}, multibody{};                 ///< within the compared time
   RattleClass analytic_whole{}, multibody_whole{};     ///< over all
   double largest_analytic = 0, largest_multibody = 0;  ///< N, over all
   bool chaotic() const { return judged < parts; }

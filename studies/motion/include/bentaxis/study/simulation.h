@@ -41,7 +41,7 @@ struct GroupDifference {
   double over_angle = 0;           ///< at equal shaft angles
   bool judged = true;              ///< flows are not
   /// Largest difference in time over what is allowed then: 1 is the limit; not_computed() of what
-  /// is not judged, and where a value is missing or not finite: then the models do not agree.
+  /// has no verdict, and where a value is missing or not finite: then the models do not agree.
   double of_allowed = 0;
   /// What differences are over: the peak, at least compare::kMinScale of the loads of the run.
   double scale = 0;
@@ -61,7 +61,7 @@ struct Effort {
   Model model;
   std::string method;
   double asked = 0;  ///< error asked of the analytic model; accuracy per step of Simbody
-  double error = 0;  ///< largest of any reaction, of peak, within the judged time
+  double error = 0;  ///< largest of any reaction, of peak, within the compared time
   double seconds = 0;
   long steps = 0, evaluations = 0;
 };
@@ -110,8 +110,8 @@ struct SimulationResult {
   EventMatch events;
   std::vector<compare::Check> checks;
   std::vector<Effort> effort;
-  std::shared_ptr<UnitRecord> exchanged[2];  ///< by model, with a unit
-  std::vector<CouplingChange> coupling;      ///< with a unit, in the judged time, largest first
+  std::shared_ptr<UnitRecord> exchanged[2];  ///< by model, with an FMU
+  std::vector<CouplingChange> coupling;      ///< with an FMU, in the compared time, largest first
   std::string multibody_choice;              ///< how Simbody's accuracy was found
 
   /// Allowed difference at a row, of peak: the wanted error times the amplification of

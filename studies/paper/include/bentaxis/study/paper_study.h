@@ -38,7 +38,7 @@ struct PaperCurve {
   double factor = 1;
   std::string times, over;       ///< facts that the curve is multiplied and divided by, or ""
   bool compliant_teeth = false;  ///< the tooth force of a compliant contact in motion instead
-  bool leaves = false;           ///< the axis by what it is: not judged
+  bool leaves = false;           ///< the axis, whatever it is: no verdict
   bool dashed = false;           ///< as it is printed
 };
 
@@ -104,7 +104,7 @@ struct DrawnPanel {
   PaperFigure figure;
   PaperPanel panel;
   std::vector<DrawnCurve> curves;
-  /// Of the judged curves: which, where on the x axis, the value.
+  /// Of the curves with a verdict: which, where on the x axis, the value.
   struct End {
     std::string curve;
     double x = 0, y = 0;

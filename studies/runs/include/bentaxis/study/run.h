@@ -59,7 +59,7 @@ struct RunOptions {
   Model model = Model::analytic;
   std::optional<Assumptions> assumptions = {};  ///< instead of the case's
   bool budget = false;  ///< torque by cause too; of a driven run of the full pump
-  bool teeth = false;   ///< what the teeth do, too; likewise, where the contact is that of teeth
+  bool teeth = false;   ///< state of the teeth, too; likewise, where contact is resolved
   bool loads = false;   ///< all loads on the bodies too: those of the driven full pump at the
                         ///< samples also of a run that is integrated or of a smaller scene
   // Of the multibody model:
@@ -103,7 +103,7 @@ ModelRun run(const PreparedCase& ready, const Samples& samples, const RunOptions
 /// Reactions at given states of shaft and block, as options.model and options.assumptions say;
 /// options.scene.method of the multibody model. The pump is whole.
 /// @throws InputError where the options say something that has no effect on given states
-/// @param teeth  if given: what the teeth do there, table of results/teeth.h
+/// @param teeth  if given: the state of the teeth there, table of results/teeth.h
 /// @param loads  if given: all loads on the bodies there
 MotionTable run_states(const PreparedCase& ready, const States& states, const RunOptions& options,
                        const PartProgress& progress_of = silent(), ResultTable* teeth = nullptr,

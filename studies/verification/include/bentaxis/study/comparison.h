@@ -32,7 +32,7 @@ inline constexpr double kDrivenRestTolerance = 1e-10;
 struct ComparisonOptions {
   Way way = Way::driven;
   std::optional<double> tolerance;            ///< of peak, of differences and of rests alike
-  ChannelChoice channels;                     ///< what is compared and judged
+  ChannelChoice channels;                     ///< what is compared
   multibody::SceneChoice scene;               ///< driven
   multibody::IntegrationOptions integration;  ///< integrated; its accuracy is the last of these:
   std::vector<double> accuracies = {1e-4, 1e-6};

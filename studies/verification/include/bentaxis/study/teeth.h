@@ -7,7 +7,7 @@
 
 namespace bentaxis::study {
 
-/// What teeth do by both models: tables of results/teeth.h, and how far they are apart.
+/// Teeth by both models: tables of results/teeth.h, and their differences.
 struct TeethComparison {
   ResultTable analytic, multibody;
   compare::Comparison comparison;

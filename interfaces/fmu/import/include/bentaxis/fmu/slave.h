@@ -24,7 +24,7 @@ double converted(double value, const Measure& from, const Measure& to);
 /// By its usual name ("rad/s", "rpm", "N.m", "Nm", "bar", "L/min", ..; "", "-", "1": none).
 std::optional<Measure> measure_named(std::string_view name);
 
-/// A variable of a unit, as modelDescription.xml says.
+/// A variable of an FMU, as modelDescription.xml says.
 struct UnitVariable {
   std::string name, description;
   std::uint32_t reference = 0;
@@ -110,7 +110,7 @@ class ImportedUnit {
   /// Where it is unpacked.
   const std::filesystem::path& folder() const;
   /// @param name  of the instance, for messages
-  /// @throws InputError in the unit's own words where it does not start
+  /// @throws InputError in the FMU's own words where it does not start
   std::unique_ptr<Slave> instantiate(const std::string& name) const;
 
  private:
