@@ -18,10 +18,10 @@ void UnitOption::add_to(CommandParser command) {
       .text("NAME=VALUE");
   command
       .option("--connect", choice_.connect,
-              "A gets the value of B. A is an input of the pump and B an output of the FMU, or A "
-              "is an input of the FMU and B a column of the CSV files. Inputs of the pump: "
-              "drive_speed, drive_acceleration, drive_torque, suction_pressure, "
-              "delivery_pressure, load_share. Equal names are always connected")
+              "an input of the pump (A) gets the value of an output of the FMU (B), or an input of "
+              "the FMU (A) that of a column of the CSV files (B). Inputs of the pump: drive_speed, "
+              "drive_acceleration, drive_torque, suction_pressure, delivery_pressure, load_share. "
+              "Equal names are always connected")
       .repeatable()
       .text("A=B");
   command
