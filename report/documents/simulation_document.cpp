@@ -670,7 +670,8 @@ report::Curves simulation_curves(const SimulationResult& r) {
 }
 
 std::string simulation_text(const SimulationResult& r) {
-  std::string text = report::answers_text(r.ready.the_case.name, r.headline(), answers_of(answers_to(r)));
+  std::string text =
+      report::answers_text(r.ready.the_case.name, r.headline(), answers_of(answers_to(r)));
   if (!r.groups.empty()) {
     text += fmt::format("{:<13} {:<17} {:>13} {:>16} {:>12}\n", "group", "       peak",
                         r.choice.steady ? "of peak" : "of peak, time",

@@ -98,8 +98,7 @@ InertiaStudy run_inertia_study(const Case& as_read, const InertiaOptions& option
     speeds.push_back(speed);
     piece = kPieces * begun - 4;
     for (const bool loaded : {false, true}) {
-      s.one_piston.push_back(
-          run_both_pistons(at, speed, loaded, multibody::Scene::piston, next()));
+      s.one_piston.push_back(run_both_pistons(at, speed, loaded, multibody::Scene::piston, next()));
       s.full.push_back(run_both_pistons(at, speed, loaded, multibody::Scene::full, next()));
     }
   }
