@@ -352,6 +352,7 @@ inline void to_json(Json& json, const Verdict& verdict) {
   json = {{"agrees", verdict.agrees}, {"headline", verdict.headline}};
   put(json, "answers", verdict.answers);
   put(json, "word", verdict.word);
+  put(json, "not_valid", verdict.not_valid);
   put(json, "tolerance", verdict.tolerance);
   if (verdict.compared) {
     json["compared"] = *verdict.compared;

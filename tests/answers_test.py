@@ -32,6 +32,9 @@ class AnswersTest(unittest.TestCase):
             self.assertTrue(any(line.startswith(answer[:60]) for line in lines), (answer, lines))
         return verdict["answers"]
 
+    def verdict(self):
+        return json.loads((self.folder / "out" / "report.json").read_text())["verdict"]
+
     def rows(self, name):
         with open(self.folder / "out" / name, newline="") as file:
             return list(csv.DictReader(file))
@@ -99,6 +102,8 @@ class AnswersTest(unittest.TestCase):
         self.assertAlmostEqual(float(re.search(r"at most ([\d.]+) Nm", answers[1])[1]), torque, delta=1e-3 * torque)
         # The film cannot push beyond the plate: that is said where the numbers are.
         self.assertRegex(answers[-1], r"^Not a possible motion of a pump in [\d.]+ % of the rows: .* outside the plate radius of 27 mm")
+        share = re.search(r"in [\d.]+ % of the rows", answers[-1])[0]
+        self.assertEqual(self.verdict()["not_valid"], share)
 
     def test_pressure(self):
         answers = self.answers("pressure", self.case("bap63_rated_hydraulic"), "--set", "operation.samples_per_revolution=60",
@@ -143,6 +148,10 @@ class AnswersTest(unittest.TestCase):
             share = float(re.match(r"Not valid over ([\d.e+-]+) % of the turn", answer)[1])
             self.assertAlmostEqual(share, limit["share_percent"], delta=0.01 * limit["share_percent"])
             self.assertIn(limit["limit"], answer)
+        worst = max(limit["share_percent"] for limit in violated)
+        self.assertEqual(self.verdict()["not_valid"], f"over {worst:.3g} % of the turn")
+        self.answers("compare", self.case("bap63_rated"), "--set", "operation.samples_per_revolution=72")
+        self.assertNotIn("not_valid", self.verdict())
         done = subprocess.run([PROGRAM, "run", self.case("bap63_rated"), "--model", "analytic", *unloaded, "--out", "run"],
                               cwd=self.folder, capture_output=True, text=True, timeout=300)
         for answer in said:

@@ -15,6 +15,8 @@ import unittest
 import xml.etree.ElementTree as xml
 import zipfile
 
+from workbooks import write_workbook
+
 PROGRAM = REPO = None  # set in main
 
 # (case, drive, versions): rigid and compliant gear, ideal and hydraulic pressure, motor, curves.
@@ -65,22 +67,6 @@ STRUCTURED = re.compile(rf"^(der\()?{IDENTIFIER}(\.{IDENTIFIER})*(,\d+)?\)?$")
 
 def run(*arguments, cwd=None):
     return subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, timeout=120, cwd=cwd)
-
-
-def write_workbook(file, rows):
-    """The least workbook (Office Open XML) with these rows on its sheet."""
-    def cell(value):
-        return f"<c><v>{value}</v></c>" if not isinstance(value, str) else f'<c t="inlineStr"><is><t>{value}</t></is></c>'
-    sheet = "".join("<row>" + "".join(map(cell, row)) + "</row>" for row in rows)
-    main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
-    document = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
-    package = "http://schemas.openxmlformats.org/package/2006/relationships"
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("xl/workbook.xml", f'<workbook xmlns="{main}" xmlns:r="{document}"><sheets>'
-                                            '<sheet name="a" sheetId="1" r:id="r1"/></sheets></workbook>')
-        archive.writestr("xl/_rels/workbook.xml.rels", f'<Relationships xmlns="{package}"><Relationship Id="r1" '
-                                                       f'Type="{document}/worksheet" Target="worksheets/sheet1.xml"/></Relationships>')
-        archive.writestr("xl/worksheets/sheet1.xml", f'<worksheet xmlns="{main}"><sheetData>{sheet}</sheetData></worksheet>')
 
 
 class Variable:

@@ -7,8 +7,15 @@ usage: identify_command_test.py BENTAXIS REPO_ROOT [options of unittest]
 import csv
 import json
 import math
+import os
 import pathlib
+import pty
+import re
+import select
+import signal
+import subprocess
 import sys
+import time
 import unittest
 
 import command_line_test as program
@@ -50,6 +57,25 @@ class IdentifyTest(ProgramTest):
         return self.run_program("identify", self.case(), "--set", "operation.samples_per_revolution=60", "--data",
                                 self.write(text), "--starts", 1, "--out", "out",
                                 *(() if "--fit-only" in options else ("--steps", 20, "--draws", 10)), *options, **others)
+
+    def test_a_long_fit_says_how_far_it_is_and_can_be_interrupted(self):
+        """Of oil a single fit takes a minute: it says so from its first evaluations on, and ends at once."""
+        case = program.REPO / "cases" / "studies" / "nine_pistons.toml"
+        terminal, stderr = pty.openpty()
+        self.addCleanup(os.close, terminal)
+        process = subprocess.Popen([program.PROGRAM, "identify", case, "--data", self.write(DATA), "--out", "out"],
+                                   cwd=self.folder, stdout=subprocess.DEVNULL, stderr=stderr)
+        os.close(stderr)
+        self.addCleanup(process.kill)
+        said, until = "", time.monotonic() + program.SECONDS
+        while not re.search(r"fit +[1-9]\d* %, [^\r]* left", said) and time.monotonic() < until:
+            if select.select([terminal], [], [], 1)[0]:
+                said += os.read(terminal, 4096).decode()
+        self.assertIsNone(process.poll(), said)
+        self.assertRegex(said, r"fit +[1-9]\d* %, [^\r]* left")
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(20), program.INTERRUPTED)
+        self.assertFalse((self.folder / "out" / "report.html").exists())
 
     def test_files_and_tables(self):
         result = self.identify(DATA)

@@ -15,6 +15,8 @@ import tempfile
 import tomllib
 import unittest
 
+from workbooks import write_workbook
+
 PROGRAM = REPO = None  # set in main
 DONE, BAD_INPUT = 0, 2
 SECONDS = 120
@@ -193,7 +195,7 @@ class OutputsTest(WordsTest):
 
 
 class DialectTest(WordsTest):
-    """Every table that is read may be separated by semicolons or tabs, with decimal commas, and in UTF-16."""
+    """Every table that is read may be separated by semicolons or tabs, with decimal commas, in UTF-16, or a workbook."""
 
     def dialects(self, text):
         comma = text.replace(",", ";").replace(".", ",")
@@ -212,6 +214,11 @@ class DialectTest(WordsTest):
                 (self.folder / name).write_bytes(content)
                 self.run_program(*arguments(name), "--out", f"out_{name}")
                 self.assertEqual((self.folder / f"out_{name}" / result).read_bytes(), expected)
+        with self.subTest("workbook"):
+            header, *rows = (line.split(",") for line in table.split())
+            write_workbook(self.folder / "book.xlsx", [header, *([float(field) for field in row] for row in rows)])
+            self.run_program(*arguments("book.xlsx"), "--out", "out_book")
+            self.assertEqual((self.folder / "out_book" / result).read_bytes(), expected)
 
     def test_duty_cycle(self):
         case = REPO / "cases" / "bap63_bearing_life.toml"
@@ -231,6 +238,53 @@ class DialectTest(WordsTest):
         table = ("theta_deg,psi_deg,theta_rpm,psi_rpm,theta_rad_per_s2,psi_rad_per_s2\n"
                  "10,9.5,1500,1490.25,100,-200\n11,10.5,1500,1490,100,-200\n")
         self.same(table, lambda file: ["run", self.case, "--model", "analytic", "--states", file], "analytic.csv")
+
+    def test_share_of_a_load(self):
+        load = ["simulate", REPO / "cases" / "bap63_load_step.toml", "--model", "analytic", "--set", "drive.duration_s=0.002",
+                "--set", "drive.samples=10"]
+        self.same("time_s,share\n0,1\n0.0005,0.75\n0.001,0.7\n0.5,0.6\n",
+                  lambda file: [*load, "--set", f'load.file="{self.folder / file}"'], "simulation_analytic.csv")
+
+    def test_opening_of_a_port(self):
+        table = "theta_deg,area_mm2\n" + "".join(f"{angle},{1.5 * min(angle, 170 - angle)}\n" for angle in range(0, 171, 10))
+        self.same(table + "180,0\n350,0\n", lambda file: [
+            "pressure", REPO / "cases" / "bap63_rated_hydraulic.toml", "--set",
+            f'hydraulics.suction_opening_file="{self.folder / file}"'], "pressure.csv")
+
+    def test_errors_of_teeth(self):
+        teeth = REPO / "cases" / "bap63_teeth.toml"
+        count = tomllib.loads(teeth.read_text())["gear"]["tooth_number"]
+        table = "tooth,shaft_um,block_um\n" + "".join(f"{i},{i % 5 - 1.5},{i % 3}\n" for i in range(1, count + 1))
+        self.same(table, lambda file: ["run", teeth, "--model", "analytic", "--set", "operation.samples_per_revolution=12", "--set",
+                                       f'gear.pitch_error_file="{self.folder / file}"'], "analytic.csv")
+
+    def test_pressure_curve(self):
+        table = "theta_deg,pressure_bar\n" + "".join(f"{20 * i},{275.5 if i < 9 else 0}\n" for i in range(18))
+        self.same(table, lambda file: ["run", self.case, "--model", "analytic", "--set", "pressure.kind=curve", "--set",
+                                       f'pressure.file="{self.folder / file}"'], "analytic.csv")
+
+    def test_record_to_identify_from(self):
+        few = ["--set", "operation.samples_per_revolution=36"]
+        self.run_program("run", self.case, "--model", "analytic", *few, "--set", "pump.tilt_deg=40.5", "--out", "rig")
+        heading, *rows = ((fields := line.split(","))[:2] for line in (self.folder / "rig" / "analytic.csv").read_text().splitlines())
+        table = "\n".join(map(",".join, [heading, *rows])) + "\n"
+
+        def identify(file):
+            data = self.folder / "data.toml"
+            data.write_text('schema = 1\n[[unknown]]\nparameter = "pump.tilt_deg"\nbetween = [35, 45]\n'
+                            f'[[curve]]\nfile = "{file}"\nrelative_uncertainty = 0.01\nwhere = "rig"\n')
+            return ["identify", self.case, *few, "--data", data, "--steps", 40]
+
+        self.same(table, identify, "unknowns.csv")
+
+    def test_operating_points_to_optimise_for(self):
+        self.same("share,speed_rpm\n0.5,1500\n1.5,1800\n", lambda file: [
+            "optimise", self.case, "--vary", "pump.tilt_deg=30:40", "--minimise", "peak:Rb1", "--maximise", "displacement_cm3",
+            "--conditions", file, "--population", 8, "--generations", 1, "--restarts", 1, "--comparison", "no"], "front.csv")
+
+    def test_a_single_row(self):
+        self.same("share,speed_rpm,delivery_bar\n1,1500,200.5\n",
+                  lambda file: ["life", REPO / "cases" / "bap63_bearing_life.toml", "--duty", file], "life.csv")
 
     def test_what_is_wrong_is_named_with_its_place(self):
         (self.folder / "duty.csv").write_text("share;speed_rpm;delivery_bar\n0,5;1500;200\n0,5;fast;200\n")

@@ -35,6 +35,10 @@ struct Grid {
   std::function<std::string(const Row& row, std::size_t column)> place;
 };
 
+/// Whether a grid is a line of names and lines of as many numbers, and nothing else: a table even
+/// with a single line of numbers.
+bool is_plain_table(const Grid& grid);
+
 /// Names, units and numbers of a grid.
 /// @throws InputError naming the cell that should be a number
 void fill(const Grid& grid, ForeignTable& table);

@@ -303,11 +303,28 @@ bool parse_number(std::string_view text, char decimal, double& value, int& digit
   return number.has_value();
 }
 
+bool is_plain_table(const Grid& grid) {
+  const auto head = std::find_if_not(grid.rows.begin(), grid.rows.end(), blank);
+  if (head == grid.rows.end() || head->cells.size() < 2) return false;
+  const auto all = [](const Row& row, auto is) {
+    return std::all_of(row.cells.begin(), row.cells.end(), is);
+  };
+  std::size_t rows = 0;
+  for (auto row = head + 1; row != grid.rows.end(); ++row) {
+    if (blank(*row)) continue;
+    if (row->cells.size() != head->cells.size()) return false;
+    if (!all(*row, [](const Cell& cell) { return cell.number; })) return false;
+    ++rows;
+  }
+  return rows > 0 &&
+         all(*head, [](const Cell& cell) { return !cell.number && !cell.text.empty(); });
+}
+
 void fill(const Grid& grid, ForeignTable& table) {
   std::vector<Run> runs = runs_of(grid);
   const auto longest = std::max_element(runs.begin(), runs.end(),
                                         [](const Run& a, const Run& b) { return a.rows < b.rows; });
-  if (longest == runs.end() || longest->rows < 2)
+  if (longest == runs.end() || (longest->rows < 2 && !is_plain_table(grid)))
     throw InputError(table.file.string() + (table.sheet.empty() ? "" : ", sheet " + table.sheet) +
                      ": holds no table of numbers");
   const Run main = *longest;

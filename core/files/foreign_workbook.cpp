@@ -201,7 +201,7 @@ bool has_numbers(const Grid& grid) {
     for (const Cell& cell : row.cells) numbers += cell.number;
     rows += numbers >= 2;
   }
-  return rows >= 3;
+  return rows >= 3 || is_plain_table(grid);
 }
 
 }  // namespace

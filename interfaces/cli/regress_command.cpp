@@ -10,6 +10,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/report/page.h"
 #include "bentaxis/study/comparison_answers.h"
+#include "bentaxis/study/piece_progress.h"
 #include "bentaxis/study/regression.h"
 #include "bentaxis/study/regression_document.h"
 #include "commands.h"
@@ -67,13 +68,22 @@ int regress(const Options& options) {
   if (!options.place.out.empty()) folders.emplace(options.place);
   std::vector<study::Outcome> outcomes;
   int status = kDone;
+  // Of a single reference how far it is, of several how many are done.
+  const Progress whole = progress_of(fmt::format("{} references", places.size()));
+  const auto part = [&](const std::string& name) {
+    if (places.size() == 1) return progress_of(name);
+    return Progress([&](double) { study::within(whole, outcomes.size(), places.size())(0); });
+  };
   for (const auto& place : places) {
-    outcomes.push_back(study::hold(place, progress_of));
-    study::Outcome& outcome = outcomes.back();
-    designs::explain(outcome, place, progress_of);
+    study::Outcome outcome = study::hold(place, part);
+    designs::explain(outcome, place, part);
     status = std::max<int>(status, status_of(outcome.state));
-    if (!outcome.error.empty())
+    if (!outcome.error.empty()) {
+      whole(1);  // clears the line
       std::fprintf(stderr, "bentaxis: %s: %s\n", outcome.name.c_str(), outcome.error.c_str());
+    }
+    outcomes.push_back(std::move(outcome));
+    whole(static_cast<double>(outcomes.size()) / static_cast<double>(places.size()));
   }
   std::printf("%s", study::regression_report(outcomes).c_str());
   std::vector<report::TestSuite> suites;

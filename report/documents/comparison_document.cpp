@@ -17,6 +17,7 @@
 #include "bentaxis/study/regression_document.h"
 #include "bentaxis/study/teeth_section.h"
 #include "bentaxis/study/timing.h"
+#include "bentaxis/study/turn_summary.h"
 #include "comparison_figures.h"
 #include "document_parts.h"
 #include "hydraulic_sections.h"
@@ -28,6 +29,7 @@ namespace {
 report::Verdict verdict_of(const ComparisonResult& r) {
   report::Verdict verdict{r.passes(), r.headline()};
   verdict.answers = comparison_answers(r);
+  verdict.not_valid = not_valid_text(r.limits);
   if (r.with) {
     verdict.models_agree = r.agrees();
     if (r.agrees() && !r.passes()) {

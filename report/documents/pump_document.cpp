@@ -4,6 +4,7 @@
 #include "bentaxis/study/force_figures.h"
 #include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/timing.h"
+#include "bentaxis/study/turn_summary.h"
 #include "comparison_figures.h"
 #include "document_parts.h"
 #include "hydraulic_sections.h"
@@ -20,6 +21,7 @@ report::Document pump_document(const ShownPump& pump, const report::Lines& progr
       pump_scene(the_case, {{table, pump.run.loads}}, nullptr, film_path_of(description)));
   document.verdict = {std::nullopt, "The analytic model alone: nothing is compared.", "One model"};
   document.verdict->answers = pump.answers();
+  document.verdict->not_valid = not_valid_text(pump.limits);
   document.key_figures = {{table.name}, "deg", turn_figures({&table})};
   document.validity = validity_section(pump.limits);
   document.models = {report::model_of(table, in_words(the_case.analytic))};

@@ -517,8 +517,11 @@ std::string milliseconds(double seconds) {
 }
 
 // Of the first model: where both agree, those of the other are the same.
-std::vector<std::string> answers_of(const SimulationResult& r) {
-  const MotionAnswers a = motion_answers(*runs_of(r).front().second, r.ready.the_case);
+MotionAnswers answers_to(const SimulationResult& r) {
+  return motion_answers(*runs_of(r).front().second, r.ready.the_case);
+}
+
+std::vector<std::string> answers_of(const MotionAnswers& a) {
   std::vector<std::string> answers;
   if (a.reached_s)
     answers.push_back(fmt::format(
@@ -552,7 +555,10 @@ report::Verdict verdict_of(const SimulationResult& r) {
   report::Verdict verdict{r.agrees(), r.headline()};
   if (r.choice.only) verdict.word = r.agrees() ? "Balanced" : "Not balanced";
   if (!r.choice.only) verdict.tolerance = r.choice.error;
-  verdict.answers = answers_of(r);
+  const MotionAnswers answers = answers_to(r);
+  verdict.answers = answers_of(answers);
+  if (answers.beyond_plate)
+    verdict.not_valid = fmt::format("in {:.3g} % of the rows", 100 * answers.beyond_plate->share);
   return verdict;
 }
 
@@ -664,7 +670,8 @@ report::Curves simulation_curves(const SimulationResult& r) {
 }
 
 std::string simulation_text(const SimulationResult& r) {
-  std::string text = report::answers_text(r.ready.the_case.name, r.headline(), answers_of(r));
+  std::string text =
+      report::answers_text(r.ready.the_case.name, r.headline(), answers_of(answers_to(r)));
   if (!r.groups.empty()) {
     text += fmt::format("{:<13} {:<17} {:>13} {:>16} {:>12}\n", "group", "       peak",
                         r.choice.steady ? "of peak" : "of peak, time",

@@ -19,9 +19,11 @@ function verdictBanner({ verdict, meaning, plausibility }, data) {
   }
   const reference = verdict && verdict.reference;
   const tone = !verdict || verdict.agrees == null ? "neutral" : verdict.agrees ? "good" : "bad";
+  const word = verdict && verdict.word || { good: "Agrees", bad: "Differs", neutral: "No verdict" }[tone];
+  const beyond = verdict && verdict.not_valid;
   return el("div", {},
-    el("div.banner." + tone, { role: "status" },
-      el("p.word", {}, verdict && verdict.word || { good: "Agrees", bad: "Differs", neutral: "No verdict" }[tone]),
+    el("div.banner." + (beyond && tone !== "bad" ? "warn" : tone), { role: "status" },
+      el("p.word", {}, beyond ? `${word}; not valid ${beyond}` : word),
       el("p.headline", {}, verdict && verdict.headline || "No comparison was made."),
       answers(verdict && verdict.answers, plausibility),
       facts(tiles, ".tiles")),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <optional>
 
 #include "bentaxis/pump/error.h"
@@ -280,17 +281,63 @@ LeastSquaresFit least_squares(const LeastSquaresProblem&, std::span<const double
 }
 #endif
 
+namespace {
+
+// How far fits are of which nobody knows how long they take: by their evaluations, of which the
+// finished ones say how many a fit needs.
+class FitProgress {
+ public:
+  FitProgress(const LeastSquaresProblem& problem, std::size_t fits, const Progress& progress)
+      : fits_(static_cast<double>(fits)), progress_(progress) {
+    constexpr double kIterations = 20;
+    const auto n = static_cast<double>(problem.parameters);
+    of_each_ = kIterations * (problem.differentiate ? 1 : 1 + 2 * n);
+  }
+
+  void evaluated() {
+    const std::lock_guard lock(mutex_);
+    ++evaluations_;
+    tell();
+  }
+  void fitted() {
+    const std::lock_guard lock(mutex_);
+    of_each_ = evaluations_ / ++done_;
+    tell();
+  }
+
+ private:
+  void tell() const {
+    if (!progress_) return;
+    constexpr double kAlmost = 0.99;
+    const double guess = std::min(kAlmost, evaluations_ / (of_each_ * fits_));
+    progress_(std::max(done_ / fits_, guess));
+  }
+
+  std::mutex mutex_;
+  double fits_, of_each_ = 0, evaluations_ = 0, done_ = 0;
+  const Progress& progress_;
+};
+
+}  // namespace
+
 std::vector<LeastSquaresFit> least_squares(const LeastSquaresProblem& problem,
                                            const std::vector<std::vector<double>>& starts,
                                            const LeastSquaresOptions& options, int threads,
                                            const Progress& progress) {
   std::vector<std::optional<LeastSquaresFit>> found(starts.size());
-  study::for_each_of(starts.size(), threads, progress, [&](std::size_t i) {
+  FitProgress fits_progress(problem, starts.size(), progress);
+  LeastSquaresProblem told = problem;
+  told.evaluate = [&](std::span<const double> x, std::span<double> residuals) {
+    fits_progress.evaluated();
+    return problem.evaluate(x, residuals);
+  };
+  numerics::parallel_for(threads, starts.size(), [&](std::size_t i) {
     try {
-      found[i] = least_squares(problem, starts[i], options);
+      found[i] = least_squares(told, starts[i], options);
     } catch (const ComputationError&) {
       found[i].reset();  // no residuals there: a start like this leads nowhere
     }
+    fits_progress.fitted();
   });
   std::vector<LeastSquaresFit> fits;
   for (auto& fit : found)

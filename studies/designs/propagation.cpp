@@ -84,6 +84,13 @@ struct Evaluated {
   std::vector<std::string> reasons;
 };
 
+// Of few points, small blocks: each is told of when it is done. In whole vectors of the kernel.
+std::size_t points_of_block(std::size_t count) {
+  constexpr std::size_t kVector = 8, kReports = 64;
+  const std::size_t vectors = std::max<std::size_t>(1, count / (kVector * kReports));
+  return std::min(kPoints, vectors * kVector);
+}
+
 // Outputs of all points, in blocks, by threads.
 Evaluated evaluate(const Response& response, std::size_t outputs, std::size_t dimension,
                    std::size_t count,
@@ -96,9 +103,9 @@ Evaluated evaluate(const Response& response, std::size_t outputs, std::size_t di
       fmt::format("--samples: {} designs of {} numbers each", count, outputs),
       "lower --samples, or ask for fewer outputs");
   Evaluated all{std::vector<double>(count * outputs), std::vector<std::string>(count)};
-  const std::size_t blocks = (count + kPoints - 1) / kPoints;
+  const std::size_t points = points_of_block(count), blocks = (count + points - 1) / points;
   study::for_each_of(blocks, threads, progress, [&](std::size_t block) {
-    const std::size_t from = block * kPoints, here = std::min(kPoints, count - from);
+    const std::size_t from = block * points, here = std::min(points, count - from);
     std::vector<double> values(here * dimension);
     for (std::size_t i = 0; i < here; ++i)
       point(from + i, std::span(values).subspan(i * dimension, dimension));

@@ -83,10 +83,12 @@ Varied varied(const std::string& name, const std::string& values, Sampling sampl
   // FROM:TO: uniform in between, of whole numbers with both ends as likely as the others.
   const std::size_t colon = values.find(':');
   const double half = v.variable.discrete() ? 0.5 : 0;
+  const double from = v.variable.value_of(values.substr(0, colon)),
+               to = v.variable.value_of(values.substr(colon + 1));
+  if (!(from - half < to + half))
+    throw InputError(name + " = " + values + ": must be FROM:TO with FROM < TO");
   v.distribution = distribution(
-      "uniform(" + number_text(v.variable.value_of(values.substr(0, colon)) - half) + ", " +
-          number_text(v.variable.value_of(values.substr(colon + 1)) + half) + ")",
-      name);
+      "uniform(" + number_text(from - half) + ", " + number_text(to + half) + ")", name);
   return v;
 }
 

@@ -136,6 +136,13 @@ std::vector<std::string> limit_answers(const std::vector<analytic::ValidityLimit
   return sentences;
 }
 
+std::string not_valid_text(const std::vector<analytic::ValidityLimit>& limits) {
+  double share = 0;
+  for (const auto& limit : limits)
+    if (limit.applicable) share = std::max(share, limit.violated_share);
+  return share > 0 ? fmt::format("over {:.3g} % of the turn", 100 * share) : "";
+}
+
 std::string timing_answer(const std::vector<TimingRow>& rows) {
   std::vector<std::string> names;
   for (const TimingRow& row : rows)

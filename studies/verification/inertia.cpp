@@ -12,6 +12,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/study/piece_progress.h"
 
 namespace bentaxis::study {
 namespace {
@@ -109,18 +110,18 @@ InertiaRun run_both_pistons(const Case& the_case, double speed_rpm, bool loaded,
   InertiaRun run;
   run.speed_rpm = speed_rpm;
   run.loaded = loaded;
-  const auto multibody_run = [&](PistonInertia inertia) {
+  const auto multibody_run = [&](PistonInertia inertia, std::size_t number) {
     // Inverse dynamics needs no equation of motion; for what has one it would hide a failure.
     const bool by_multipliers = multibody::has_equation_of_motion(at.pump, inertia);
     if (!by_multipliers) run.by_inverse_dynamics.push_back(inertia);
     return multibody::run_driven(
-        at, with(at.analytic, inertia), samples, progress, scene,
+        at, with(at.analytic, inertia), samples, within(progress, number, 2), scene,
         by_multipliers ? std::nullopt : std::optional(multibody::Method::residual));
   };
   run.analytic_lumped = analytic::run(at, with(at.analytic, PistonInertia::lumped), samples);
   run.analytic_real = analytic::run(at, with(at.analytic, PistonInertia::real), samples);
-  run.multibody_lumped = multibody_run(PistonInertia::lumped);
-  run.multibody_real = multibody_run(PistonInertia::real);
+  run.multibody_lumped = multibody_run(PistonInertia::lumped, 0);
+  run.multibody_real = multibody_run(PistonInertia::real, 1);
   return run;
 }
 

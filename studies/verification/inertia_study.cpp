@@ -8,6 +8,7 @@
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/study/piece_progress.h"
 #include "bentaxis/study/published_section.h"
 #include "bentaxis/study/run.h"
 
@@ -80,21 +81,25 @@ InertiaStudy run_inertia_study(const Case& as_read, const InertiaOptions& option
   const Case& the_case = s.the_case;
   for (const double speed : options.speeds) at_speed(the_case, speed);  // refuses early
   std::vector<double> speeds;                                           // that could be computed
+  // Of each speed the oil, then two scenes without load and loaded.
+  constexpr std::size_t kPieces = 5;
+  const Progress whole = progress_of("speeds");
+  std::size_t begun = 0;
   for (const double speed : options.speeds) {
+    std::size_t piece = kPieces * begun++;
+    const auto next = [&] { return within(whole, piece++, kPieces * options.speeds.size()); };
     Case at;
     try {
-      at = prepare(at_speed(as_read, speed), progress_of).the_case;
+      at = prepare(at_speed(as_read, speed), [&](const auto&) { return next(); }).the_case;
     } catch (const ComputationError& error) {
       s.failed.push_back({speed, fmt::format("speed_rpm = {:g}", speed), error.what()});
       continue;
     }
     speeds.push_back(speed);
+    piece = kPieces * begun - 4;
     for (const bool loaded : {false, true}) {
-      const std::string what = fmt::format("{:g} rpm, {}", speed, loaded ? "loaded" : "no load");
-      s.one_piston.push_back(run_both_pistons(at, speed, loaded, multibody::Scene::piston,
-                                              progress_of("one piston, " + what)));
-      s.full.push_back(run_both_pistons(at, speed, loaded, multibody::Scene::full,
-                                        progress_of("full pump, " + what)));
+      s.one_piston.push_back(run_both_pistons(at, speed, loaded, multibody::Scene::piston, next()));
+      s.full.push_back(run_both_pistons(at, speed, loaded, multibody::Scene::full, next()));
     }
   }
   if (speeds.empty())

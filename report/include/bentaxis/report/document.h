@@ -289,6 +289,7 @@ struct Verdict {
   std::string word = {};  ///< instead of "Agrees" or "Differs", or ""
   std::optional<double> tolerance = std::nullopt;
   std::optional<int> compared = std::nullopt;  ///< number of channels
+  std::string not_valid = {};  ///< where no pump behaves so: "over 7.5 % of the turn", or ""
   std::optional<bool> checks_hold = std::nullopt;
   std::optional<double> digits = std::nullopt;  ///< of the worst channel
   std::optional<WorstChannel> worst = std::nullopt;

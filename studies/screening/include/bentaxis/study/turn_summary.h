@@ -63,6 +63,9 @@ class TurnSummary {
 /// What must hold and does not, each in a sentence.
 std::vector<std::string> limit_answers(const std::vector<analytic::ValidityLimit>& limits);
 
+/// "over 7.5 % of the turn": the largest share in which a limit does not hold; "" where all do.
+std::string not_valid_text(const std::vector<analytic::ValidityLimit>& limits);
+
 /// Which verdicts on the timing of the ports exceed their limits, in a sentence.
 std::string timing_answer(const std::vector<TimingRow>& rows);
 
