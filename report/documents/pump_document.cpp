@@ -21,6 +21,7 @@ report::Document pump_document(const ShownPump& pump, const report::Lines& progr
   document.verdict = {std::nullopt, "The analytic model alone: nothing is compared.", "One model"};
   document.verdict->answers = pump.answers();
   document.key_figures = {{table.name}, "deg", turn_figures({&table})};
+  append(document.key_figures->rows, transfer_figures({&table}, the_case.pump));
   document.validity = validity_section(pump.limits);
   document.models = {report::model_of(table, in_words(the_case.analytic))};
   document.runs.emplace();
