@@ -33,12 +33,7 @@ double cosine_of(const PreparedPump& pump, double sine, double cosine, std::size
   return cosine * pump.phase_cos[k] + sine * pump.phase_sin[k];
 }
 
-// Free play at an angle of the shaft (T11), or why there is none.
-struct FreePlay {
-  double low = 0, high = 0;  // rad
-  bool touches = false;      // always, or a bound on either side is missing
-};
-FreePlay free_play(const PreparedPump& pump, double theta) {
+FreePlay free_play_of(const PreparedPump& pump, double theta) {
   const closed_form::Pump<double>& p = pump.numbers;
   const double radius = p.piston.joint_radius;
   const double versine = p.joint.versine;
@@ -48,8 +43,8 @@ FreePlay free_play(const PreparedPump& pump, double theta) {
   const double bore = p.piston.bore_radius;
   const double reach = p.wall.clearance / p.wall.share;  // H
   const double sine = std::sin(theta), cosine = std::cos(theta);
-  FreePlay play{-1e300, 1e300, false};
-  bool bounded = false;
+  FreePlay play{-1e300, 1e300};
+  bool bounded = false, touches = false;
   for (std::size_t k = 0; k < pump.phase_sin.size(); ++k) {
     const double s = sine_of(pump, sine, cosine, k);
     const double c = cosine_of(pump, sine, cosine, k);
@@ -57,15 +52,21 @@ FreePlay free_play(const PreparedPump& pump, double theta) {
     const double im = 2 * swing * s * c - offset * s;
     const double size = std::hypot(re, im);
     const double q = (size * size + bore * bore - reach * reach) / (2 * bore * size);
-    if (q >= 1) play.touches = true;
+    if (q >= 1) touches = true;
     if (q < -1 || q >= 1) continue;
     bounded = true;
     const double argument = std::atan2(im, re);
     const double half = std::acos(q);
-    play.high = std::min(play.high, half - argument);
-    play.low = std::max(play.low, -half - argument);
+    if (half - argument < play.high) {
+      play.high = half - argument;
+      play.high_piston = static_cast<int>(k);
+    }
+    if (-half - argument > play.low) {
+      play.low = -half - argument;
+      play.low_piston = static_cast<int>(k);
+    }
   }
-  play.touches = play.touches || !bounded || !(play.low < play.high);
+  play.exists = bounded && !touches && play.low < play.high;
   return play;
 }
 
@@ -196,9 +197,14 @@ class Balance {
 
 }  // namespace
 
+FreePlay Model::free_play(double theta) const {
+  return prepared_->transfer == TransferKind::pistons ? free_play_of(*prepared_, theta)
+                                                      : FreePlay();
+}
+
 FrozenLag Model::frozen_lag(const Instant& instant, const PressureTrace& pressure) const {
-  const FreePlay play = free_play(*prepared_, instant.shaft.angle);
-  if (play.touches) refuse_play(pump_, instant.shaft.angle);
+  const FreePlay play = free_play_of(*prepared_, instant.shaft.angle);
+  if (!play.exists) refuse_play(pump_, instant.shaft.angle);
   Balance balance(*prepared_, instant, pressure);
   FrozenLag lag;
   lag.low = play.low;
@@ -278,7 +284,7 @@ void require_free_play(const Case& the_case) {
   for (const int count : {kFreePlayAngles, samples})
     for (int i = 0; i < count; ++i) {
       const double theta = radians(360.0 * i / count);
-      if (free_play(pump, theta).touches) {
+      if (!free_play_of(pump, theta).exists) {
         try {
           refuse_play(the_case.pump, theta);
         } catch (const InputError& error) {

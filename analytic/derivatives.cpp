@@ -92,10 +92,47 @@ DerivativeModel::DerivativeModel(DerivativeModel&&) noexcept = default;
 
 void DerivativeModel::reactions(const Instant& instant, std::span<const Instant> rates,
                                 std::span<double> values, std::span<double> derivatives) const {
+  const std::size_t reactions = layout_.reactions();
+  if (values.size() < reactions || derivatives.size() < reactions * directions_)
+    throw InputError("derivatives: space for " + std::to_string(derivatives.size()) +
+                     " of them, needed are " + std::to_string(reactions * directions_));
+  if (!prepared_->pump.has_tooth_force()) {
+    values[layout_.Rcs()] = not_computed();
+    for (std::size_t d = 0; d < directions_; ++d)
+      derivatives[d * reactions + layout_.Rcs()] = not_computed();
+  }
+  differentiate(prepared_->pump.common(), instant, rates,
+                [&](std::size_t c, double value, std::span<const double> along, std::size_t first) {
+                  values[c] = value;
+                  for (std::size_t d = 0; d < along.size(); ++d)
+                    derivatives[(first + d) * reactions + c] = along[d];
+                });
+}
+
+void DerivativeModel::joint_couple(const Instant& instant, std::span<const Instant> rates,
+                                   std::span<double> values, std::span<double> derivatives) const {
+  if (!layout_.has(Quantity::TcsJoint))
+    throw InputError("derivatives: [transfer] kind = \"" + to_string(layout_.transfer()) +
+                     "\": must be a joint, which has a couple");
+  if (values.size() < 3 || derivatives.size() < 3 * directions_)
+    throw InputError("derivatives: space for " + std::to_string(derivatives.size()) +
+                     " of them, needed are " + std::to_string(3 * directions_));
+  const std::size_t couple = layout_.TcsJoint(0);
+  differentiate(prepared_->pump.common(layout_), instant, rates,
+                [&](std::size_t c, double value, std::span<const double> along, std::size_t first) {
+                  if (c < couple || c > couple + 2) return;
+                  values[c - couple] = value;
+                  for (std::size_t d = 0; d < along.size(); ++d)
+                    derivatives[(first + d) * 3 + c - couple] = along[d];
+                });
+}
+
+template <class Put>
+void DerivativeModel::differentiate(const closed_form::Common& common, const Instant& instant,
+                                    std::span<const Instant> rates, const Put& put) const {
   const TransferKind transfer = prepared_->pump.transfer;
   if (transfer == TransferKind::gear) require_locked(instant, "derivatives");
   const auto n = static_cast<std::size_t>(layout_.pistons());
-  const std::size_t reactions = layout_.reactions();
   const auto fits = [&](const Instant& rate) {
     return rate.chamber_pressure.empty() || rate.chamber_pressure.size() == n;
   };
@@ -104,15 +141,6 @@ void DerivativeModel::reactions(const Instant& instant, std::span<const Instant>
     throw InputError("derivatives: " + std::to_string(rates.size()) + " rates for " +
                      std::to_string(directions_) + " directions, or not one pressure for each of " +
                      std::to_string(n) + " pistons");
-  if (values.size() < reactions || derivatives.size() < reactions * directions_)
-    throw InputError("derivatives: space for " + std::to_string(derivatives.size()) +
-                     " of them, needed are " + std::to_string(reactions * directions_));
-  const closed_form::Common common = prepared_->pump.common();
-  if (!prepared_->pump.has_tooth_force()) {
-    values[layout_.Rcs()] = not_computed();
-    for (std::size_t d = 0; d < directions_; ++d)
-      derivatives[d * reactions + layout_.Rcs()] = not_computed();
-  }
   for (std::size_t chunk = 0; chunk < prepared_->numbers.size(); ++chunk) {
     const std::size_t first = chunk * kDirections;
     const std::size_t count = std::min<std::size_t>(kDirections, directions_ - first);
@@ -137,10 +165,8 @@ void DerivativeModel::reactions(const Instant& instant, std::span<const Instant>
     const auto evaluate = [&](const auto& turning) {
       closed_form::reactions<Dual>(common, prepared_->numbers[chunk], turning, true, pressure,
                                    [&](int index, const Dual& value) {
-                                     const auto c = static_cast<std::size_t>(index);
-                                     values[c] = value.value;
-                                     for (std::size_t d = 0; d < count; ++d)
-                                       derivatives[(first + d) * reactions + c] = value.rate[d];
+                                     put(static_cast<std::size_t>(index), value.value,
+                                         std::span<const double>(&value.rate[0], count), first);
                                    });
     };
     if (transfer == TransferKind::cardan) {

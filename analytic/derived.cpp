@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "bentaxis/numerics/minimum.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::analytic {
@@ -56,6 +57,66 @@ DerivedQuantities derived_quantities(const Geometry& g) {
   const auto [smallest, largest] = std::minmax_element(angles.begin(), angles.end());
   result.smallest_tilt = *smallest;
   result.largest_tilt = *largest;
+  return result;
+}
+
+namespace {
+
+// Extremes over a turn of a smooth function of the shaft's angle: those of many angles, each
+// refined between its neighbours.
+struct Extremes {
+  double low, high;
+};
+template <class Function>
+Extremes extremes_of(const Function& value) {
+  constexpr int kAngles = 720;
+  const double step = 2 * kPi / kAngles;
+  Extremes found{value(0.0), value(0.0)};
+  double low_at = 0, high_at = 0;
+  for (int i = 1; i < kAngles; ++i) {
+    const double here = value(i * step);
+    if (here < found.low) {
+      found.low = here;
+      low_at = i * step;
+    }
+    if (here > found.high) {
+      found.high = here;
+      high_at = i * step;
+    }
+  }
+  const auto negative = [&](double theta) { return -value(theta); };
+  found.low = value(numerics::smallest_at(value, low_at - step, low_at + step));
+  found.high = value(numerics::smallest_at(negative, high_at - step, high_at + step));
+  return found;
+}
+
+}  // namespace
+
+DerivedQuantities derived_quantities(const PumpParameters& pump) {
+  const Geometry& g = pump.geometry;
+  if (pump.transfer.kind != TransferKind::cardan) return derived_quantities(g);
+  DerivedQuantities result;
+  result.piston_area = kPi / 4 * g.bore_diameter * g.bore_diameter;
+  double strokes = 0, nearest = g.piston_length, farthest = 0;
+  for (int k = 0; k < g.pistons; ++k) {
+    const double phase = 2 * kPi * k / g.pistons;
+    const auto across = [&](double theta) {
+      return joint_distance(g, theta - phase, theta + block_lead(pump, theta) - phase);
+    };
+    const auto place = [&](double theta) {
+      const double off = across(theta);
+      return g.joint_circle_radius * std::sin(g.tilt) * std::cos(theta - phase) +
+             std::sqrt(std::max(0.0, (g.piston_length - off) * (g.piston_length + off)));
+    };
+    const Extremes ends = extremes_of(place), tilt = extremes_of(across);
+    strokes += ends.high - ends.low;
+    nearest = std::min(nearest, tilt.low);
+    farthest = std::max(farthest, tilt.high);
+  }
+  result.stroke = strokes / g.pistons;
+  result.displacement = result.piston_area * strokes;
+  result.smallest_tilt = std::asin(std::min(1.0, nearest / g.piston_length));
+  result.largest_tilt = std::asin(std::min(1.0, farthest / g.piston_length));
   return result;
 }
 

@@ -58,18 +58,32 @@ RoundingEstimate::RoundingEstimate(const PumpParameters& pump, const Assumptions
 }
 
 void RoundingEstimate::estimate(const Instant& instant,
-                                const std::vector<double>& pressure_rounding, Parts& parts) const {
-  const std::size_t count = layout().reactions();
+                                const std::vector<double>& pressure_rounding, Parts& parts,
+                                const PressureTrace* trace) const {
+  const std::size_t count = layout().size();
   std::vector<double> base(layout().size());
   std::vector<double> other(layout().size());
   std::vector<double> largest(count, 0.0);
   parts.inputs.assign(count, 0.0);
   parts.arithmetic.assign(count, 0.0);
   parts.worst_input.assign(count, "");
-  model_.reactions(instant, base);
+  Instant placed;
+  const auto evaluate = [&](const Model& model, const Instant& at, std::vector<double>& values) {
+    if (trace == nullptr) return model.reactions(at, values);
+    placed = at;
+    model.place_at_constant_speed(placed, *trace);
+    model.reactions(placed, values);
+  };
+  // The torque from outside is what the lag makes 0.
+  const auto is_estimated = [&](std::size_t c) {
+    return layout().channels()[c].kind == ChannelKind::reaction &&
+           !(layout().has(Quantity::Tb) && c == layout().Tb());
+  };
+  evaluate(model_, instant, base);
 
   const auto add = [&](const std::string& name, double factor) {
     for (std::size_t c = 0; c < count; ++c) {
+      if (!is_estimated(c)) continue;
       const double effect = std::abs(other[c] - base[c]) * factor;
       if (!(effect > 0)) continue;  // not computed, or no effect
       parts.inputs[c] += effect;
@@ -80,7 +94,7 @@ void RoundingEstimate::estimate(const Instant& instant,
     }
   };
   for (const Perturbed& p : perturbed_) {
-    p.model.reactions(instant, other);
+    evaluate(p.model, instant, other);
     add(p.input, p.per_change);
   }
   Instant changed = instant;
@@ -91,7 +105,7 @@ void RoundingEstimate::estimate(const Instant& instant,
     if (step == 0) step = std::max(std::abs(before), rounding / kInputRounding) * kChange;
     value = before + step;
     if (locked) changed.block = changed.shaft;
-    model_.reactions(changed, other);
+    evaluate(model_, changed, other);
     add(name, rounding / (value - before));
     value = before;
     if (locked) changed.block = changed.shaft;
@@ -101,7 +115,7 @@ void RoundingEstimate::estimate(const Instant& instant,
   vary("theta", changed.shaft.angle,
        kInputRounding * std::max(std::abs(instant.shaft.angle), 2 * kPi), 0x1p-41);
   vary("speed", changed.shaft.speed, kInputRounding * std::abs(instant.shaft.speed));
-  if (!locked) {
+  if (!locked && trace == nullptr) {
     vary("psi", changed.block.angle,
          kInputRounding * std::max(std::abs(instant.block.angle), 2 * kPi), 0x1p-41);
     vary("block speed", changed.block.speed, kInputRounding * std::abs(instant.block.speed));
@@ -112,15 +126,17 @@ void RoundingEstimate::estimate(const Instant& instant,
   }
   vary("ports.delivery", changed.ports.delivery, kInputRounding * std::abs(instant.ports.delivery));
   vary("ports.suction", changed.ports.suction, kInputRounding * std::abs(instant.ports.suction));
-  for (std::size_t k = 0; k < pressure_rounding.size(); ++k)
+  // Pressures that follow the lag are those of the trace.
+  for (std::size_t k = 0; k < pressure_rounding.size() && trace == nullptr; ++k)
     vary("pressure", changed.chamber_pressure[k], pressure_rounding[k]);
 
   for (std::size_t m = 0; m < kModes.size(); ++m) {
     {
       const RoundingMode scope(kModes[m]);
-      directed_[m].reactions(instant, other);
+      evaluate(directed_[m], instant, other);
     }
     for (std::size_t c = 0; c < count; ++c) {
+      if (!is_estimated(c)) continue;
       const double change = std::abs(other[c] - base[c]);
       if (change > parts.arithmetic[c]) parts.arithmetic[c] = change;
     }
@@ -149,9 +165,6 @@ double pressure_rounding(const PressureTrace& trace, double theta_k_deg) {
 std::vector<GroupRounding> estimate_rounding(const Case& the_case, const Assumptions& assumptions,
                                              const Samples& samples, const PressureTrace& trace,
                                              std::size_t most_angles) {
-  // Where pistons carry the block their lag is a root: a wall force has the round-off of a length
-  // times the stiffness, whatever the inputs' (docs/transfer.md).
-  if (the_case.pump.transfer.kind == TransferKind::pistons) return {};
   const RoundingEstimate estimate(the_case.pump, assumptions);
   const bool computed =
       the_case.pressure.kind == PressureKind::hydraulic && the_case.pressure.points == 0;
@@ -169,8 +182,13 @@ std::vector<GroupRounding> estimate_rounding(const Case& the_case, const Assumpt
     for (int k = 1; k <= samples.pistons; ++k)
       pressure[k - 1] = pressure_rounding(
           trace, piston_angle_deg(samples.theta_deg[row], k, samples.pistons), computed);
-    estimate.estimate(placed.at(instant), pressure, parts);
-    for (std::size_t c = 0; c < layout.reactions(); ++c) {
+    // Where pistons carry the block their lag is a root, found anew under every change.
+    if (the_case.pump.transfer.kind == TransferKind::pistons)
+      estimate.estimate(instant, pressure, parts, &trace);
+    else
+      estimate.estimate(placed.at(instant), pressure, parts);
+    for (std::size_t c = 0; c < layout.size(); ++c) {
+      if (parts.inputs[c] + parts.arithmetic[c] == 0 && c >= layout.reactions()) continue;
       const std::string& name = layout.channels()[c].group;
       auto group = std::find_if(groups.begin(), groups.end(),
                                 [&](const GroupRounding& g) { return g.group == name; });

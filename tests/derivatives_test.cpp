@@ -41,18 +41,30 @@ struct Extended {
 
     const auto at = [&](auto get) { return get(instant) + step * Real(get(instant_rate)); };
     const Real theta = at([](const Instant& i) { return i.shaft.angle; });
-    closed_form::State<Real> state;
+    closed_form::CardanState<Real> state;
     state.sine = std::sin(theta);
     state.cosine = std::cos(theta);
     state.omega = at([](const Instant& i) { return i.shaft.speed; });
     state.omega_dot = at([](const Instant& i) { return i.shaft.acceleration; });
     state.suction = at([](const Instant& i) { return i.ports.suction; });
     state.delivery = at([](const Instant& i) { return i.ports.delivery; });
-    std::vector<Real> out(ChannelLayout(pump.geometry.pistons).reactions());
-    closed_form::reactions<Real>(
-        prepare(pump, assumptions).common(), prepared, state, true,
-        [&](int k) { return at([k](const Instant& i) { return i.chamber_pressure[k]; }); },
-        [&](int index, Real value) { out[index] = value; });
+    const ChannelLayout layout(pump);
+    std::vector<Real> out(layout.size());
+    const PreparedPump place = prepare(pump, assumptions);
+    const auto evaluate = [&](const auto& turning) {
+      closed_form::reactions<Real>(
+          place.common(layout), prepared, turning, true,
+          [&](int k) { return at([k](const Instant& i) { return i.chamber_pressure[k]; }); },
+          [&](int index, Real value) { out[index] = value; });
+    };
+    if (pump.transfer.kind == TransferKind::cardan) {
+      closed_form::turn_block(prepared.joint, state);
+      evaluate(state);
+    } else if (pump.transfer.kind == TransferKind::constant_velocity) {
+      evaluate(closed_form::JointState<Real>{state});
+    } else {
+      evaluate(static_cast<const closed_form::State<Real>&>(state));
+    }
     return out;
   }
 
@@ -87,11 +99,22 @@ constexpr Real kStep = 1e-3L;
 TEST(Derivatives, AreDifferencesInExtendedPrecision) {
   RandomPump random(17);
   double worst = 0;
-  for (int i = 0; i < 60; ++i) {
+  int of_joints = 0;
+  for (int i = 0; i < 90; ++i) {
     Extended x;
     x.pump = random.free(random.pump());
+    if (i >= 60) {
+      x.pump.gear = {};
+      x.pump.transfer.kind = i % 3 == 0 ? TransferKind::constant_velocity : TransferKind::cardan;
+      if (i % 3 != 0) x.pump.transfer.cardan = CardanJoint{0.1 * i - 7};
+      x.pump.block.axial_inertia = 1e-3 * (i - 50);
+      if (assembly_margin(x.pump).longest_distance >= 0.9 * x.pump.geometry.piston_length) continue;
+      ++of_joints;
+    }
+    // The motion of a universal joint's block has larger derivatives of higher order.
+    const Real step = i < 60 ? kStep : kStep / 2;
     x.assumptions = {i % 4 != 0, x.pump.piston.inertia,
-                     i % 5 == 0 ? BlockDrive::imposed : BlockDrive::mesh};
+                     i < 60 && i % 5 == 0 ? BlockDrive::imposed : BlockDrive::mesh};
     x.instant = random.instant(x.pump, true);
 
     // Every number of the pump and of the instant, each by its own size.
@@ -136,7 +159,7 @@ TEST(Derivatives, AreDifferencesInExtendedPrecision) {
     for (std::size_t d = 0; d < pumps.size(); ++d) {
       x.pump_rate = pumps[d];
       x.instant_rate = instants[d];
-      const std::vector<Real> differences = x.derivatives(kStep);
+      const std::vector<Real> differences = x.derivatives(step);
       for (std::size_t c = 0; c < reactions; ++c) {
         const double found = derivatives[d * reactions + c];
         ASSERT_EQ(is_computed(found), is_computed(expected[c]));
@@ -147,8 +170,48 @@ TEST(Derivatives, AreDifferencesInExtendedPrecision) {
             << names[d] << ", channel " << model.layout().channels()[c].name << ", pump " << i;
       }
     }
+    if (!x.pump.transfer.is_joint()) continue;
+    // The joint's couple likewise.
+    std::vector<double> couple(3), rates(3 * pumps.size());
+    model.joint_couple(x.instant, instants, couple, rates);
+    Model(x.pump, x.assumptions).evaluate(x.instant, expected);
+    for (std::size_t d = 0; d < pumps.size(); ++d) {
+      x.pump_rate = pumps[d];
+      x.instant_rate = instants[d];
+      const std::vector<Real> differences = x.derivatives(step);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t c = model.layout().TcsJoint(axis);
+        ASSERT_NEAR(couple[axis], expected[c], 1e-13 * scale);
+        ASSERT_NEAR(rates[3 * d + axis], static_cast<double>(differences[c]),
+                    scaled(kTolerance) * scale)
+            << names[d] << ", couple " << axis << ", pump " << i;
+      }
+    }
   }
+  EXPECT_GT(of_joints, 20);
   RecordProperty("worst", std::to_string(worst));
+}
+
+// The couple is that of a joint; a lag that is a root has no derivatives here.
+TEST(Derivatives, OfOtherTransfersAreRefused) {
+  const Case gear = reference_case("bap63_rated");
+  const PumpParameters tilt = rate_of(gear.pump, "geometry.tilt");
+  const DerivativeModel model(gear.pump, gear.analytic, {&tilt, 1});
+  Instant instant = instant_at(gear, 10, 157);
+  const Instant rate;
+  std::vector<double> three(3);
+  EXPECT_EQ(refusal([&] {
+              model.joint_couple(instant, {&rate, 1}, three, three);
+            }),
+            "derivatives: [transfer] kind = \"gear\": must be a joint, which has a couple");
+  const Case pistons = read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) /
+                                 "reference_data/transfers/pistons_seven/case.toml");
+  const PumpParameters none = no_rates(pistons.pump);
+  EXPECT_EQ(refusal([&] {
+              DerivativeModel(pistons.pump, pistons.analytic, {&none, 1});
+            }),
+            "derivatives: [transfer] kind = \"pistons\": must be of another kind: the lag of the "
+            "block is a root");
 }
 
 TEST(Derivatives, RefuseWhatDoesNotFit) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
 
 namespace bentaxis::study {
 namespace {
@@ -94,6 +95,88 @@ TEST(KeyFiguresTest, WhatIsNotThereIsLeftOut) {
   EXPECT_DOUBLE_EQ(film->values.at(0), 7);
   EXPECT_TRUE(std::isnan(film->values.at(1)));
   EXPECT_FALSE(film->difference.has_value());
+}
+
+// A block that turns at 1500 rpm 0.1 sin(2 theta) deg behind the shaft, with a couple of known
+// size.
+TEST(KeyFiguresTest, AUniversalJointHasLagRippleAndSideCouples) {
+  PumpParameters pump;
+  pump.geometry.pistons = 2;
+  pump.geometry.tilt = kPi / 6;
+  pump.transfer.kind = TransferKind::cardan;
+  ResultTable made;
+  made.name = "only";
+  made.channels = ChannelLayout(pump).channels();
+  for (int i = 0; i < 72; ++i) made.theta_deg.push_back(5.0 * i);
+  made.values.assign(made.rows() * made.columns(), 0);
+  for (std::size_t row = 0; row < made.rows(); ++row) {
+    const double t = made.theta_deg[row] * kPi / 180;
+    const double psi = made.theta_deg[row] - 0.1 * std::sin(2 * t);
+    value(made, "psi_deg", row) = psi;
+    value(made, "psi_rpm", row) = 1500 + 75 * std::cos(2 * t);
+    value(made, "Tcs_x2_Nm", row) = row == 9 ? 3 : 0;
+    value(made, "Tcs_y2_Nm", row) = row == 9 ? 4 : 0;
+    // Ends of the strokes at 1 and 181 deg of the first bore, 0 and 180 of the other.
+    value(made, "zB_1_z2_mm", row) = 10 * std::cos((psi - 1) * kPi / 180);
+    value(made, "zB_2_z2_mm", row) = 10 * std::cos((psi - 180) * kPi / 180);
+  }
+  const auto rows = transfer_figures({&made}, pump);
+  const auto of = [&](const std::string& quantity) {
+    for (const auto& row : rows)
+      if (row.quantity == quantity) return row;
+    ADD_FAILURE() << "no " << quantity;
+    return report::KeyFigures::Row{};
+  };
+  EXPECT_NEAR(of("lag of the block, smallest").values.at(0), -0.1, 1e-9);
+  EXPECT_NEAR(of("lag of the block, largest").values.at(0), 0.1, 1e-9);
+  EXPECT_EQ(of("lag of the block, largest").at, 45);
+  EXPECT_NEAR(of("speed of the block, maximum less minimum over the mean").values.at(0), 10, 1e-9);
+  EXPECT_DOUBLE_EQ(of("side couple on the block, peak").values.at(0), 5);
+  EXPECT_EQ(of("side couple on the block, peak").at, 45);
+  EXPECT_NEAR(of("side couple on the shaft, peak").values.at(0),
+              std::hypot(3, 4 * std::cos(kPi / 6)), 1e-12);
+  EXPECT_NEAR(of("inner dead centre, earliest of the pistons").values.at(0), 0, 2e-3);
+  EXPECT_NEAR(of("inner dead centre, latest of the pistons").values.at(0), 1, 2e-3);
+  EXPECT_NEAR(of("outer dead centre, earliest of the pistons").values.at(0), 180, 2e-3);
+  EXPECT_NEAR(of("outer dead centre, latest of the pistons").values.at(0), 181, 2e-3);
+  // A gear has none of this.
+  ResultTable gear = table("gear");
+  EXPECT_TRUE(transfer_figures({&gear}, PumpParameters()).empty());
+}
+
+// Two pistons push alike to round-off. At 120 deg piston 2 pushes more: it takes over there, and
+// piston 1 does again where the turn closes on itself.
+TEST(KeyFiguresTest, PistonsThatCarryHandOver) {
+  PumpParameters pump;
+  pump.geometry.pistons = 2;
+  pump.transfer.kind = TransferKind::pistons;
+  ResultTable made;
+  made.name = "only";
+  made.channels = ChannelLayout(pump).channels();
+  for (int i = 0; i < 36; ++i) made.theta_deg.push_back(10.0 * i);
+  made.values.assign(made.rows() * made.columns(), 0);
+  for (std::size_t row = 0; row < made.rows(); ++row) {
+    const bool first = row < 9 || row >= 27;
+    value(made, "lag_deg", row) = 1 + 0.01 * static_cast<double>(row);
+    value(made, first ? "Rw_1_x2_N" : "Rw_2_x2_N", row) = 100;
+    value(made, first ? "Rw_2_y2_N" : "Rw_1_y2_N", row) = 100 * (1 - 1e-9);  // no hand-over
+  }
+  value(made, "Rw_2_y2_N", 12) = 300;
+  const auto rows = transfer_figures({&made}, pump);
+  const auto values_of = [&](const std::string& quantity) {
+    std::vector<double> values;
+    for (const auto& row : rows)
+      if (row.quantity == quantity) values.push_back(row.values.at(0));
+    return values;
+  };
+  EXPECT_EQ(values_of("hand-overs from piston to piston per turn"), std::vector<double>{2});
+  EXPECT_EQ(values_of("pistons that push at a time, at most"), std::vector<double>{2});
+  EXPECT_EQ(values_of("lag of the block, largest"), std::vector<double>{1.35});
+  const auto peaks = turn_figures({&made});
+  const auto* wall = find(peaks, "Rw", "N");
+  ASSERT_NE(wall, nullptr);
+  EXPECT_EQ(wall->note, "piston 2");
+  EXPECT_EQ(wall->at.value(), 120);
 }
 
 TEST(KeyFiguresTest, WhatTheOilDoesIsInUnitsOfTheField) {

@@ -50,6 +50,16 @@ Case with_torque(double duration = 0.01, int samples = 20) {
   return c;
 }
 
+// A universal joint with the oil in time; the shaft is free.
+Case with_universal_joint() {
+  Case c = with_torque(0.02, 20);
+  c.pump.transfer.kind = TransferKind::cardan;
+  c.pump.transfer.cardan.emplace();
+  c.pump.geometry.tilt = radians(20);
+  c.pump.geometry.bore_circle_radius = 24.17e-3;
+  return c;
+}
+
 UnitChoice driven_by(Drive drive) {
   UnitChoice choice;
   choice.drive = drive;
@@ -150,8 +160,20 @@ INSTANTIATE_TEST_SUITE_P(
         AsSimulated{"compliant_teeth", Drive::speed,
                     [] { return shipped("bap63_tooth_rattle", 0.01, 20); }},
         AsSimulated{"ideal_pressure", Drive::speed,
-                    [] { return shipped("bap63_rated", 0.01, 20); }}),
+                    [] { return shipped("bap63_rated", 0.01, 20); }},
+        AsSimulated{"constant_velocity_joint", Drive::speed,
+                    [] { return shipped("bap63_constant_velocity", 0.01, 20); }},
+        AsSimulated{"universal_joint", Drive::torque, with_universal_joint}),
     [](const auto& parameter) { return parameter.param.name; });
+
+TEST(Plant, PistonsThatTouchAreRefused) {
+  EXPECT_EQ(
+      refusal([] {
+        Plant(shipped("bap63_tapered_pistons", 0.01, 20), driven_by(Drive::speed), kSteps);
+      }),
+      "[transfer] kind = \"pistons\": must be of another kind where oil or another program is "
+      "integrated with the motion: the touches of the pistons are not followed there yet");
+}
 
 // Where the end is not known beforehand steps are others, by what is left of errors: of impacts,
 // which magnify them, more.

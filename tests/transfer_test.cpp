@@ -5,11 +5,14 @@
 
 #include <cmath>
 #include <complex>
+#include <map>
 
 #include "bentaxis/analytic/batch.h"
 #include "bentaxis/analytic/body_loads.h"
 #include "bentaxis/analytic/budget.h"
 #include "bentaxis/analytic/constant_speed.h"
+#include "bentaxis/analytic/derived.h"
+#include "bentaxis/analytic/rounding.h"
 #include "bentaxis/analytic/simulation.h"
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/csv.h"
@@ -431,6 +434,46 @@ TEST(FrozenLagOfPistons, HandsOverAsTheGeometrySays) {
   }
 }
 
+// With an offset of the axes pistons carry in one sector alone, near 225 deg for b > 0 and 45 deg
+// for b < 0: N hand-overs for odd and for even N. By positions, and by the largest wall force.
+TEST(FrozenLagOfPistons, AnOffsetOfTheAxesMakesOneSectorCarry) {
+  for (const double offset : {0.3, -0.3})
+    for (const int pistons : {7, 6}) {
+      auto changes = kSymmetric;
+      changes.push_back("pump.axis_offset_mm=" + number_text(offset));
+      changes.push_back("pump.pistons=" + std::to_string(pistons));
+      changes.emplace_back("transfer.stiffness_N_per_um=1000000");
+      changes.emplace_back("transfer.dissipation_s_per_m=0");
+      const Case the_case = transfer_case("pistons_seven", changes);
+      const Model model(the_case.pump, the_case.analytic);
+      const PressureTrace pressure(the_case.pressure);
+      std::vector<double> values(model.layout().size());
+      int hand_overs = 0, first = -1, last = -1;
+      for (int i = 0; i < 720; ++i) {
+        const double theta_deg = (i + 0.5) / 2;
+        const Touch touch = first_touch(the_case, radians(theta_deg));
+        const double middle = offset > 0 ? 225 : 45;
+        const double at = piston_angle_deg(theta_deg, touch.piston + 1, pistons);
+        EXPECT_LT(std::abs(std::remainder(at - middle, 360)), 180.0 / pistons + 3) << theta_deg;
+        hand_overs += last >= 0 && touch.piston != last;
+        if (first < 0) first = touch.piston;
+        last = touch.piston;
+        if (i % 24 != 0) continue;
+        Instant instant = instant_at(the_case, theta_deg, rad_per_second(1500));
+        model.place_at_constant_speed(instant, pressure);
+        model.evaluate(instant, values);
+        int carries = 0;
+        const auto force = [&](int k) {
+          return std::hypot(values[model.layout().Rw(k, 0)], values[model.layout().Rw(k, 1)]);
+        };
+        for (int k = 1; k < pistons; ++k)
+          if (force(k) > force(carries)) carries = k;
+        EXPECT_EQ(carries, touch.piston) << theta_deg;
+      }
+      EXPECT_EQ(hand_overs + (first != last), pistons);
+    }
+}
+
 TEST(FrozenLagOfPistons, GoesToTheRigidLimitAsOneOverTheStiffness) {
   double before = 0;
   for (const char* stiffness : {"1000", "2000", "4000"}) {
@@ -492,6 +535,89 @@ TEST(FrozenLagOfPistons, FollowsItsRules) {
 TEST(FrozenLagOfPistons, FailsWhereAPistonLeavesItsBoreFirst) {
   const Case soft = transfer_case("pistons_seven", {"transfer.stiffness_N_per_um=1e-6"});
   EXPECT_THROW(turn(soft), ComputationError);
+}
+
+// ---- What follows from the geometry
+
+// Stroke, displacement and tilts against a turn of the model's own positions.
+TEST(TransferDerived, AreThoseOfATurn) {
+  for (const std::string& kind : kKinds)
+    for (Case the_case : various(kind)) {
+      if (kind == "pistons") continue;  // of a block without lag
+      the_case.operation.samples_per_revolution = 3600;
+      const ResultTable table = turn(the_case);
+      const ChannelLayout at(the_case.pump);
+      const int pistons = the_case.pump.geometry.pistons;
+      double strokes = 0;
+      for (int k = 0; k < pistons; ++k) {
+        const auto z = column(table, at.channels()[at.zB(k)].name);
+        const auto [low, high] = std::minmax_element(z.begin(), z.end());
+        strokes += (*high - *low) * 1e-3;
+      }
+      const auto derived = analytic::derived_quantities(the_case.pump);
+      EXPECT_NEAR(derived.displacement, derived.piston_area * strokes, 2e-6 * derived.displacement);
+      EXPECT_NEAR(derived.stroke, strokes / pistons, 2e-6 * derived.stroke);
+      EXPECT_NEAR(std::sin(derived.largest_tilt) * the_case.pump.geometry.piston_length,
+                  assembly_margin(the_case.pump).longest_distance, 1e-9);
+      const auto as_gear = analytic::derived_quantities(the_case.pump.geometry);
+      if (kind == "constant_velocity")
+        EXPECT_EQ(derived.displacement, as_gear.displacement);
+      else
+        EXPECT_GT(std::abs(derived.displacement / as_gear.displacement - 1), 1e-6);
+    }
+}
+
+// Ends of the free play by bisection of positions, and which piston stands there.
+TEST(TransferDerived, FreePlayEndsWhereAPistonTouches) {
+  const Case the_case = transfer_case("pistons_seven");
+  const Model model(the_case.pump, the_case.analytic);
+  for (double theta = 0; theta < 6.3; theta += 0.1) {
+    const analytic::FreePlay play = model.free_play(theta);
+    const Touch touch = first_touch(the_case, theta);
+    ASSERT_TRUE(play.exists);
+    EXPECT_NEAR(play.high, touch.lag, 1e-13);
+    EXPECT_EQ(play.high_piston, touch.piston);
+    EXPECT_LT(play.low, play.high);
+  }
+  EXPECT_FALSE(Model(transfer_case("cardan").pump, the_case.analytic).free_play(1).exists);
+}
+
+// ---- Round-off
+
+std::map<std::string, double> estimated(const Case& the_case) {
+  std::map<std::string, double> groups;
+  for (const auto& group : analytic::estimate_rounding(
+           the_case, the_case.analytic, one_turn(the_case), PressureTrace(the_case.pressure), 1000))
+    groups[group.group] = group.total();
+  return groups;
+}
+
+// The estimate bounds the distance from curves of 50 digits, and is not far from it. Walls that are
+// stiffer by a factor carry forces whose round-off grows with it.
+TEST(TransferRounding, IsThatOfTheStoredCurves) {
+  for (const std::string& name : kCurves) {
+    const Case the_case = transfer_case(name);
+    const ResultTable table = turn(the_case);
+    const NumericTable curve = read_numeric_csv(folder_of(name) / "reference.csv");
+    const auto rounding = estimated(the_case);
+    std::map<std::string, double> off;
+    for (std::size_t c = 0; c < curve.header.size(); ++c) {
+      const std::size_t at = table.find(curve.header[c]);
+      if (at == table.columns() || table.channels[at].kind != ChannelKind::reaction) continue;
+      double& largest = off[table.channels[at].group];
+      for (std::size_t row = 0; row < table.rows(); ++row)
+        largest = std::max(largest, std::abs(table.at(row, at) - curve.rows[row][c]));
+    }
+    EXPECT_EQ(off.size() + 1, rounding.size()) << name << ": and Rcs, which is not computed";
+    for (const auto& [group, difference] : off) {
+      ASSERT_TRUE(rounding.contains(group)) << name << " " << group;
+      EXPECT_LE(difference, rounding.at(group)) << name << " " << group;
+      EXPECT_LE(rounding.at(group), 1e-11 * table.peak(group)) << name << " " << group;
+    }
+  }
+  const auto soft = estimated(transfer_case("pistons_seven"));
+  const auto stiff = estimated(transfer_case("pistons_seven", {"transfer.stiffness_N_per_um=1e8"}));
+  EXPECT_GT(stiff.at("Rw"), 100 * soft.at("Rw"));
 }
 
 // ---- Given states
@@ -647,18 +773,23 @@ TEST(TransferBatch, IsTheModelAtOneInstant) {
     instants.omega_dot = {nullptr, -40};
     instants.chamber_pressure = pressures;
     for (const auto set : analytic::available_instruction_sets()) {
-      analytic::BatchColumns columns(model.layout().reactions(), kCount);
-      batch.reactions(instants,
-                      analytic::outputs_of(model.layout(), analytic::ChannelGroup::all, columns),
-                      {set, 1});
+      analytic::BatchColumns columns(model.layout().size(), kCount);
+      analytic::BatchOutputs outputs =
+          analytic::outputs_of(model.layout(), analytic::ChannelGroup::all, columns);
+      outputs.resize(model.layout().size(), nullptr);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t c = model.layout().TcsJoint(axis);
+        outputs[c] = columns.column(c);
+      }
+      batch.reactions(instants, outputs, {set, 1});
       std::vector<double> values(model.layout().size());
       Instant instant;
       for (std::size_t k = 0; k < 5; ++k) instant.chamber_pressure.push_back(pressures[k].all);
       for (std::size_t i = 0; i < kCount; ++i) {
         instant.turn(theta[i], 150, -40);
-        model.reactions(instant, values);
-        for (std::size_t c = 0; c < model.layout().reactions(); ++c) {
-          if (c == model.layout().Rcs()) continue;
+        model.evaluate(instant, values);
+        for (std::size_t c = 0; c < outputs.size(); ++c) {
+          if (outputs[c] == nullptr || c == model.layout().Rcs()) continue;
           EXPECT_NEAR(columns.column(c)[i], values[c], scaled(1e-12) * (1e4 + std::abs(values[c])))
               << to_string(set) << " " << model.layout().channels()[c].name;
         }

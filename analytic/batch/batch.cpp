@@ -179,6 +179,13 @@ void run_job(const PreparedPump& pump, const double* pumps, const ChannelLayout&
   job.stream = streams(instants, outputs);
   job.bodies = std::any_of(bodies, outputs.end(), [](const double* p) { return p != nullptr; });
   job.outputs = outputs.data();
+  if (layout.has(Quantity::TcsJoint) && outputs.size() > layout.TcsJoint(2)) {
+    const auto first = outputs.begin() + static_cast<std::ptrdiff_t>(layout.TcsJoint(0));
+    if (std::any_of(first, first + 3, [](const double* p) { return p != nullptr; })) {
+      job.common.couple_column = static_cast<int>(layout.TcsJoint(0));
+      job.stream = false;  // lines have room for reactions alone
+    }
+  }
   if (!pump.has_tooth_force() && outputs[layout.Rcs()] != nullptr)
     std::fill_n(outputs[layout.Rcs()], instants.count, not_computed());
   BatchKernel* const run = kernel(options.instruction_set).run;

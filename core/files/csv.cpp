@@ -434,6 +434,18 @@ std::string csv_text(const std::string& text) {
   return quoted + "\"";
 }
 
+namespace {
+
+// The torque from outside is that of a given motion: other runs have no such column.
+bool is_written(const ResultTable& table, std::size_t column) {
+  if (table.channels[column].quantity != "Tb") return true;
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    if (is_computed(table.at(row, column))) return true;
+  return false;
+}
+
+}  // namespace
+
 std::string to_csv(const MotionTable& table) {
   const ResultTable& results = table.results;
   std::string text;
@@ -441,7 +453,8 @@ std::string to_csv(const MotionTable& table) {
   const auto& names = table.state_names;
   for (const std::string& name : names) text += name + ",";
   for (std::size_t c = 0; c < results.columns(); ++c)
-    if (std::find(names.begin(), names.end(), results.channels[c].name) == names.end()) {
+    if (is_written(results, c) &&
+        std::find(names.begin(), names.end(), results.channels[c].name) == names.end()) {
       columns.push_back(c);
       text += results.channels[c].name + ",";
     }
@@ -482,10 +495,19 @@ void append_csv_row(std::string& text, double theta_deg, const double* values, s
 }
 
 std::string to_csv(const ResultTable& table) {
-  std::string text = csv_header(table.channels);
-  for (std::size_t row = 0; row < table.rows(); ++row)
-    append_csv_row(text, table.theta_deg[row], table.values.data() + row * table.columns(),
-                   table.columns());
+  std::vector<Channel> channels;
+  std::vector<std::size_t> columns;
+  for (std::size_t c = 0; c < table.columns(); ++c)
+    if (is_written(table, c)) {
+      columns.push_back(c);
+      channels.push_back(table.channels[c]);
+    }
+  std::string text = csv_header(channels);
+  std::vector<double> line(columns.size());
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    for (std::size_t i = 0; i < columns.size(); ++i) line[i] = table.at(row, columns[i]);
+    append_csv_row(text, table.theta_deg[row], line.data(), line.size());
+  }
   return text;
 }
 

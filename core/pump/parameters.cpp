@@ -42,17 +42,14 @@ AssemblyMargin assembly_margin(const Geometry& g) {
   return {distance(worst_u), std::acos(worst_u) / kRadPerDegree};
 }
 
-namespace {
-
-// Lag psi - theta of a universal joint's block, from a.a' = 0 of its arms.
-double cardan_lead(const PumpParameters& pump, double theta) {
+// From a.a' = 0 of the joint's arms.
+double block_lead(const PumpParameters& pump, double theta) {
+  if (pump.transfer.kind != TransferKind::cardan) return 0;
   const double t = theta - pump.transfer.cardan.value_or(CardanJoint()).phase;
   const double c = std::cos(pump.geometry.tilt);
   return std::atan2((c - 1) * std::sin(t) * std::cos(t),
                     std::cos(t) * std::cos(t) + c * std::sin(t) * std::sin(t));
 }
-
-}  // namespace
 
 AssemblyMargin assembly_margin(const PumpParameters& pump) {
   const Geometry& g = pump.geometry;
@@ -64,7 +61,7 @@ AssemblyMargin assembly_margin(const PumpParameters& pump) {
   for (int k = 0; k < g.pistons; ++k) {
     const double phase = 2 * kPi * k / g.pistons;
     const auto distance = [&](double theta) {
-      return joint_distance(g, theta - phase, theta + cardan_lead(pump, theta) - phase);
+      return joint_distance(g, theta - phase, theta + block_lead(pump, theta) - phase);
     };
     const auto take = [&](double theta, double value) {
       if (value > worst.longest_distance) worst = {value, theta / kRadPerDegree};

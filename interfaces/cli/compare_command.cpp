@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -30,18 +32,39 @@ struct Options {
   std::vector<std::string> analytic, multibody;  // KEY=VALUE assumptions
 };
 
+// What drives the block is an assumption that the case file says too: it is read as a change of it.
+constexpr char kTransfer[] = "transfer=";
+bool is_transfer(const std::string& text) { return text.starts_with(kTransfer); }
+Case read_with(CaseOption of, const std::vector<std::string>& assumptions) {
+  for (const std::string& text : assumptions)
+    if (is_transfer(text))
+      of.changes.push_back("transfer.kind=" + text.substr(std::size(kTransfer) - 1));
+  return of.read();
+}
+
 int compare(const Options& options) {
   options.choice.refuse_without_effect(true);
-  Case first = options.the_case.read();
+  const auto names_transfer = [](const std::vector<std::string>& assumptions) {
+    return std::any_of(assumptions.begin(), assumptions.end(), is_transfer);
+  };
+  const bool transfer = names_transfer(options.analytic) || names_transfer(options.multibody);
+  if (transfer && !options.multibody_case.empty())
+    throw InputError(
+        "--multibody-case: must be left out beside an assumption transfer=..: the other case says "
+        "itself what drives its block");
+  Case first = read_with(options.the_case, options.analytic);
   std::optional<Case> second;
-  if (!options.multibody_case.empty())
+  if (transfer)
+    second = read_with(options.the_case, options.multibody);
+  else if (!options.multibody_case.empty())
     second = CaseOption{options.multibody_case, options.the_case.changes, options.the_case.strict}
                  .read();
   for (const auto& text : options.analytic)
-    study::apply_assumption(text, first.pump, first.analytic);
+    if (!is_transfer(text)) study::apply_assumption(text, first.pump, first.analytic);
   Case& of_multibody = second ? *second : first;
   for (const auto& text : options.multibody)
-    study::apply_assumption(text, of_multibody.pump, of_multibody.multibody);
+    if (!is_transfer(text))
+      study::apply_assumption(text, of_multibody.pump, of_multibody.multibody);
   if (second) study::check_same_run(first, *second);
   const Case given = first;
   const auto samples = static_cast<std::size_t>(options.uncertainty);
@@ -57,6 +80,7 @@ int compare(const Options& options) {
   if (!options.choice.accuracies.empty()) how.accuracies = options.choice.accuracies;
   how.target = options.choice.target();
   how.with = options.with;
+  how.split_transfer = transfer;
   how.loads = true;
   if (const auto data = shipped_reference_data()) how.published = *data / "published";
   study::ComparisonResult result =
@@ -106,9 +130,8 @@ Command add_compare_command(CommandParser program) {
       .option("--analytic", options->analytic,
               "assumption of the analytic model: piston_friction=on|off, "
               "inertia=lumped|real|dynamically_equivalent, gear=mesh|imposed, "
-              "flank_shape=involute|octoid; "
-              "overrides the "
-              "case file")
+              "flank_shape=involute|octoid, "
+              "transfer=gear|constant_velocity|cardan|pistons; overrides the case file")
       .text("KEY=VALUE ..");
   command.option("--multibody", options->multibody, "the same for the multibody model")
       .text("KEY=VALUE ..");

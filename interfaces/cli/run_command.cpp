@@ -9,6 +9,7 @@
 #include "bentaxis/study/run.h"
 #include "bentaxis/study/state_doubts.h"
 #include "bentaxis/study/timing.h"
+#include "bentaxis/study/transfer_summary.h"
 #include "bentaxis/study/turn_summary.h"
 #include "commands.h"
 #include "console.h"
@@ -29,6 +30,10 @@ struct Options {
 void warn(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings)
     std::fprintf(stderr, "bentaxis: warning: %s\n", warning.c_str());
+}
+
+void append_all(std::vector<std::string>& answers, std::vector<std::string> more) {
+  for (std::string& answer : more) answers.push_back(std::move(answer));
 }
 
 // What was found, then the files.
@@ -114,22 +119,30 @@ int run(const Options& options) {
   run_options.teeth = toothed && driven && run_options.scene.scene == multibody::Scene::full;
   std::vector<std::string> answers;
   if (analytic && !run_options.teeth) {
-    study::TurnSummary summary(ChannelLayout(ready.the_case.pump.geometry.pistons).channels());
+    const PumpParameters& pump = ready.the_case.pump;
+    study::TurnSummary summary(ChannelLayout(pump).channels());
+    study::TransferSummary transfer(pump, ChannelLayout(pump).channels());
     study::stream_analytic(
         ready, assumptions, wanted, folder.open("analytic.csv"),
-        [&](double theta_deg, const double* values) { summary.add(theta_deg, values); },
+        [&](double theta_deg, const double* values) {
+          summary.add(theta_deg, values);
+          transfer.add(theta_deg, values);
+        },
         progress_of);
     answers = summary.answers();
+    append_all(answers, transfer.answers());
   } else {
     const study::ModelRun result = study::run(ready, run_options, progress_of);
     answers = study::TurnSummary(result.table).answers();
+    append_all(answers, study::TransferSummary(ready.the_case.pump, result.table).answers());
     if (!result.choice.empty()) std::fprintf(stderr, "chosen %s\n", result.choice.c_str());
     const std::string name = to_string(options.model);
     folder.add(name + ".csv", to_csv(select_channels(result.table, wanted)));
     if (result.teeth) folder.add("teeth_" + name + ".csv", to_csv(*result.teeth));
   }
-  for (std::string& sentence : study::limit_answers(ready, assumptions))
-    answers.push_back(std::move(sentence));
+  if (std::string play = study::free_play_answer(ready.the_case.pump); !play.empty())
+    answers.push_back(std::move(play));
+  append_all(answers, study::limit_answers(ready, assumptions));
   if (ready.hydraulics)
     answers.push_back(study::timing_answer(study::timing_rows(ready.the_case, *ready.hydraulics)));
   return finish(folder, ready.the_case.name, answers);

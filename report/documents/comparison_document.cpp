@@ -58,6 +58,8 @@ report::KeyFigures key_figures_of(const ComparisonResult& r, const report::Docum
   report::KeyFigures key{
       {r.analytic.name, r.multibody.name}, "deg", turn_figures({&r.analytic, &r.multibody})};
   const auto add = [&](report::KeyFigures::Row row) { key.rows.push_back(std::move(row)); };
+  for (auto& row : transfer_figures({&r.analytic, &r.multibody}, r.first.the_case.pump))
+    add(std::move(row));
   if (document.budget)
     for (const auto& line : document.budget->efficiency)
       if ((line.name == "hydraulic-mechanical" || line.name == "total") &&

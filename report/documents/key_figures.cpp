@@ -5,10 +5,13 @@
 #include <utility>
 
 #include "bentaxis/pump/units.h"
+#include "bentaxis/study/transfer_summary.h"
 #include "bentaxis/study/turn_summary.h"
 
 namespace bentaxis::study {
 namespace {
+
+constexpr std::size_t kSectors = 2;  // of a piston that carries, that are key figures
 
 using Row = report::KeyFigures::Row;
 using Tables = std::vector<const ResultTable*>;
@@ -86,6 +89,64 @@ std::vector<Row> turn_figures(const Tables& tables) {
   add(rows, torque_row(summaries, "drive torque, maximum less minimum over the mean", "%",
                        [](const TurnSummary::Torque& torque) { return torque.ripple(); }));
   append(rows, peaks(summaries, tables.front()->theta_deg));
+  return rows;
+}
+
+std::vector<Row> transfer_figures(const Tables& tables, const PumpParameters& pump) {
+  std::vector<TransferSummary> summaries;
+  for (const ResultTable* table : tables) summaries.emplace_back(pump, *table);
+  std::vector<Row> rows;
+  const auto put = [&](const char* quantity, const char* symbol, const char* unit,
+                       const auto& number, std::optional<double> at = {}, std::string note = "") {
+    report::Values values;
+    for (const TransferSummary& summary : summaries) values.push_back(number(summary));
+    Row row = key_row(quantity, symbol, unit, std::move(values));
+    if (is_computed(row.values.front())) row.at = at;
+    row.note = std::move(note);
+    add(rows, std::move(row));
+  };
+  const TransferSummary& first = summaries.front();
+  const bool walls = pump.transfer.kind == TransferKind::pistons;
+  put(
+      "lag of the block, smallest", "delta", "deg", [](const auto& s) { return s.lag().low; },
+      first.lag().low_deg);
+  put(
+      "lag of the block, largest", "delta", "deg", [](const auto& s) { return s.lag().high; },
+      first.lag().high_deg);
+  put("speed of the block, maximum less minimum over the mean", "psi'", "%",
+      [](const auto& s) { return s.speed_ripple(); });
+  put(
+      "side couple on the block, peak", "Tcs", "Nm",
+      [](const auto& s) { return s.couple_on_block().value; }, first.couple_on_block().theta_deg);
+  put(
+      "side couple on the shaft, peak", "Tcs", "Nm",
+      [](const auto& s) { return s.couple_on_shaft().value; }, first.couple_on_shaft().theta_deg);
+  if (walls) {
+    put("hand-overs from piston to piston per turn", "", "",
+        [](const auto& s) { return static_cast<double>(s.hand_overs()); });
+    put("pistons that push at a time, at most", "", "",
+        [](const auto& s) { return static_cast<double>(s.most_walls()); });
+    const std::size_t sectors = std::min(kSectors, first.sectors_of_first().size());
+    for (std::size_t i = 0; i < sectors; ++i) {
+      const auto end_of = [i](const TransferSummary& s, double TransferSummary::Sector::*end) {
+        const auto all = s.sectors_of_first();
+        return i < all.size() ? all[i].*end : not_computed();
+      };
+      put("angle from which piston 1 carries most", "theta", "deg",
+          [&](const auto& s) { return end_of(s, &TransferSummary::Sector::from_deg); });
+      put("angle to which piston 1 carries most", "theta", "deg",
+          [&](const auto& s) { return end_of(s, &TransferSummary::Sector::to_deg); });
+    }
+  }
+  if (pump.transfer.kind == TransferKind::gear) return rows;
+  put("inner dead centre, earliest of the pistons", "psi_k", "deg",
+      [](const auto& s) { return s.inner_dead_centre().low; });
+  put("inner dead centre, latest of the pistons", "psi_k", "deg",
+      [](const auto& s) { return s.inner_dead_centre().high; });
+  put("outer dead centre, earliest of the pistons", "psi_k", "deg",
+      [](const auto& s) { return s.outer_dead_centre().low; });
+  put("outer dead centre, latest of the pistons", "psi_k", "deg",
+      [](const auto& s) { return s.outer_dead_centre().high; });
   return rows;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bentaxis/hydraulics/steady_state.h"
+#include "bentaxis/pump/parameters.h"
 #include "bentaxis/report/document.h"
 #include "bentaxis/results/result_table.h"
 
@@ -19,6 +20,12 @@ report::KeyFigures::Row key_row(std::string quantity, std::string symbol, std::s
 /// is left out.
 /// @param tables  one or two, of the same rows
 std::vector<report::KeyFigures::Row> turn_figures(const std::vector<const ResultTable*>& tables);
+
+/// How the block of a transfer other than the gear moves against the shaft over a turn, side
+/// couples of a joint, which piston carries when, and the dead centres of the pistons. None of a
+/// gear.
+std::vector<report::KeyFigures::Row> transfer_figures(const std::vector<const ResultTable*>& tables,
+                                                      const PumpParameters& pump);
 
 /// The same of a motion, whose torque has a peak instead of a mean. @param at  of the rows
 std::vector<report::KeyFigures::Row> motion_figures(const std::vector<const ResultTable*>& tables,

@@ -23,6 +23,7 @@ report::Document pump_document(const ShownPump& pump, const report::Lines& progr
   document.verdict->answers = pump.answers();
   document.verdict->not_valid = not_valid_text(pump.limits);
   document.key_figures = {{table.name}, "deg", turn_figures({&table})};
+  append(document.key_figures->rows, transfer_figures({&table}, the_case.pump));
   document.validity = validity_section(pump.limits);
   document.models = {report::model_of(table, in_words(the_case.analytic))};
   document.runs.emplace();

@@ -158,7 +158,7 @@ class Picture {
       : case_(the_case),
         p_(the_case.pump),
         g_(the_case.pump.geometry),
-        derived_(analytic::derived_quantities(g_)),
+        derived_(analytic::derived_quantities(p_)),
         o_(p_),
         size_(o_.size),
         block_from_(o_.block_from),

@@ -168,8 +168,7 @@ struct DataModel::Implementation {
   }
 
   double value_of(const Output& output, const Scratch& scratch) const {
-    if (output.source == Source::derived)
-      return derived_value(output, scratch.the_case.pump.geometry);
+    if (output.source == Source::derived) return derived_value(output, scratch.the_case.pump);
     std::vector<double> curve(scratch.table.rows());
     for (std::size_t row = 0; row < curve.size(); ++row) {
       double square = 0, value = 0;

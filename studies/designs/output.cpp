@@ -442,10 +442,16 @@ class Turn {
 
 }  // namespace
 
-double derived_value(const Output& output, const Geometry& geometry) {
+double derived_value(const Output& output, const PumpParameters& pump) {
   for (const DerivedEntry& d : kDerived)
-    if (output.item == d.name) return d.value(analytic::derived_quantities(geometry));
+    if (output.item == d.name) return d.value(analytic::derived_quantities(pump));
   return not_computed();
+}
+
+double derived_value(const Output& output, const Geometry& geometry) {
+  PumpParameters pump;
+  pump.geometry = geometry;
+  return derived_value(output, pump);
 }
 
 namespace {
@@ -493,7 +499,7 @@ std::vector<double> values_of(const std::vector<Output>& outputs, const Case& th
   if (std::none_of(outputs.begin(), outputs.end(), is(Source::motion))) prepared();
   for (const Output& o : outputs) {
     if (o.source == Source::derived) {
-      values.push_back(derived_value(o, the_case.pump.geometry));
+      values.push_back(derived_value(o, the_case.pump));
     } else if (o.source == Source::hydraulics) {
       values.push_back(not_computed());
       for (const hydraulics::Line& line : hydraulics::lines(*prepared().hydraulics))

@@ -159,7 +159,7 @@ bool TurnStatistics::find(const Case& the_case, std::span<double> results) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     const TurnOutputs::Place& place = outputs_.places[i];
     if (place.of_geometry) {
-      results[i] = derived_value(outputs_.geometry[place.measured], the_case.pump.geometry);
+      results[i] = derived_value(outputs_.geometry[place.measured], the_case.pump);
       continue;
     }
     const analytic::Statistics& found = statistics_[place.measured];

@@ -217,7 +217,7 @@ DisplacementStudy displacement_study(const Case& the_case, const std::vector<dou
   DisplacementStudy study;
   study.motor = the_case.operation.speed_rpm < 0;
   const double sign = study.motor ? -1 : 1;
-  study.geometric = analytic::derived_quantities(the_case.pump.geometry).displacement;
+  study.geometric = analytic::derived_quantities(the_case.pump).displacement;
   study.asked = speeds_rpm.size() * delivery_bar.size();
   std::vector<std::string> reasons(study.asked);
   std::vector<FlowPoint> at_suction(study.asked), at_delivery(study.asked);

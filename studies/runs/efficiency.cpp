@@ -14,7 +14,7 @@ double pressure_difference(const PreparedCase& ready) {
 }
 
 double ideal_flow(const Case& the_case) {
-  return analytic::derived_quantities(the_case.pump.geometry).displacement *
+  return analytic::derived_quantities(the_case.pump).displacement *
          rad_per_second(the_case.operation.speed_rpm) / (2 * kPi);
 }
 

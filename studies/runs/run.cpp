@@ -220,9 +220,10 @@ void stream_analytic(const PreparedCase& ready, const Assumptions& assumptions,
   std::vector<Channel> channels;
   std::vector<std::size_t> columns;
   for (std::size_t c = 0; c < model.layout().size(); ++c)
-    if (wanted(model.layout().channels()[c])) {
+    if (const Channel& channel = model.layout().channels()[c];
+        wanted(channel) && channel.quantity != "Tb") {  // of a given motion alone
       columns.push_back(c);
-      channels.push_back(model.layout().channels()[c]);
+      channels.push_back(channel);
     }
   out.write(csv_header(channels));
   std::string line;

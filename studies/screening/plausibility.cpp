@@ -11,6 +11,7 @@
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/validity.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/registry.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/samples.h"
@@ -30,6 +31,9 @@ constexpr double kSlowest = 0.05;        // m/s
 constexpr double kCreep = 1;             // m/s, below it losses are no longer shares of the power
 constexpr double kLightLoad = 100e5;     // Pa, likewise
 constexpr int kTurnAngles = 72;
+constexpr int kPlayAngles = 360;
+constexpr double kCardanTilt = 25;       // deg; the block's speed ripples by 20 %
+constexpr double kWidePlay = 5;          // deg, of a block that pistons carry
 constexpr double kShareOfTurn = 0.05;    // a limit violated for less is an edge of the pressure
 constexpr double kOutsideShare = 0.25;   // likewise of the film force's point, when ports open
 constexpr double kIdealTransition = 20;  // deg, where the pressure is still to be computed
@@ -50,6 +54,15 @@ struct Turn {
   double lowest_pressure = 0, highest_pressure = 0;
   double land_force = 0, press_force = 0;  // N, mean
   std::vector<analytic::ValidityLimit> limits;
+};
+
+// Where pistons carry the block: its free play over a turn, and how fast the piston that carries on
+// the driving side leaves its wall.
+struct Walls {
+  double share = 1;                     // w = 1 - l_c/b1
+  double widest = 0, widest_deg = 0;    // rad, and where
+  double without_deg = not_computed();  // an angle without free play
+  double leaving = 0, leaving_deg = 0;  // m/s, and where
 };
 
 struct Facts {
@@ -77,6 +90,7 @@ struct Facts {
   double full_torque;   // Nm, ideal torque at `load` if the axes stood at a right angle
   bool real;            // whether the data of real pistons are used
   std::optional<Turn> turn;
+  std::optional<Walls> walls;
 
   bool defaulted(const std::string& table, const std::string& key) const {
     for (const InputEntry& entry : the_case.entries)
@@ -142,13 +156,50 @@ std::optional<Turn> turn_of(const Facts& f) {
   }
 }
 
+std::optional<Walls> walls_of(const Facts& f) {
+  if (f.pump.transfer.kind != TransferKind::pistons || !f.pump.transfer.wall) return std::nullopt;
+  try {
+    const analytic::Model model(f.pump, f.the_case.analytic);
+    const double omega = rad_per_second(f.the_case.operation.speed_rpm);
+    Walls walls;
+    walls.share = 1 - f.pump.transfer.wall->from_joint / f.g.piston_length;
+    for (int i = 0; i < kPlayAngles; ++i) {
+      const double theta_deg = 360.0 * i / kPlayAngles, theta = radians(theta_deg);
+      const analytic::FreePlay play = model.free_play(theta);
+      if (!play.exists) {
+        walls.without_deg = theta_deg;
+        continue;
+      }
+      if (play.high - play.low > walls.widest) {
+        walls.widest = play.high - play.low;
+        walls.widest_deg = theta_deg;
+      }
+      const double lag = omega < 0 ? play.low : play.high;
+      const int piston = omega < 0 ? play.low_piston : play.high_piston;
+      const auto approach = [&](double turned) {
+        const double at = theta + turned - 2 * kPi * piston / f.g.pistons;
+        return walls.share * joint_distance(f.g, at, at - lag);
+      };
+      const double step = 1e-5;
+      const double rate = omega * (approach(step) - approach(-step)) / (2 * step);
+      if (-rate > walls.leaving) {
+        walls.leaving = -rate;
+        walls.leaving_deg = theta_deg;
+      }
+    }
+    return walls;
+  } catch (const InputError&) {
+    return std::nullopt;  // the run itself will say it
+  }
+}
+
 Facts::Facts(const Case& of)
     : the_case(of),
       pump(of.pump),
       g(of.pump.geometry),
       ports(of.pressure.ports),
       oil(of.hydraulics && of.pressure.kind == PressureKind::hydraulic ? &*of.hydraulics : nullptr),
-      derived(analytic::derived_quantities(g)),
+      derived(analytic::derived_quantities(pump)),
       speed(std::abs(of.operation.speed_rpm)),
       piston_speed(2 * derived.stroke * speed / 60),
       spacing(g.pistons > 1 ? 2 * g.bore_circle_radius * std::sin(kPi / g.pistons) : 0),
@@ -170,6 +221,7 @@ Facts::Facts(const Case& of)
                                 of.analytic.inertia != PistonInertia::lumped ||
                                 of.multibody.inertia != PistonInertia::lumped)) {
   turn = turn_of(*this);
+  walls = walls_of(*this);
 }
 
 // ---- Words
@@ -240,6 +292,14 @@ bool has_stroke_and_oil(const Facts& f) { return f.oil != nullptr && f.derived.s
 bool has_real_pistons(const Facts& f) { return f.real && f.pump.piston.mass != 0; }
 bool has_shaft_mass(const Facts& f) { return f.pump.shaft.mass != 0; }
 bool has_block_mass(const Facts& f) { return f.pump.block.mass != 0; }
+bool has_walls(const Facts& f) { return f.walls.has_value(); }
+bool has_cardan(const Facts& f) { return f.pump.transfer.kind == TransferKind::cardan; }
+// Data of walls in a pump whose pistons are not meant to touch them.
+bool has_unused_walls(const Facts& f) {
+  const auto& wall = f.pump.transfer.wall;
+  return f.pump.transfer.kind != TransferKind::pistons && wall && wall->clearance > 0 &&
+         wall->from_joint > 0;
+}
 bool has_teeth(const Facts& f) {
   return f.pump.gear.teeth && f.pump.gear.contact == ToothContact::teeth;
 }
@@ -468,6 +528,82 @@ const Check kChecks[] = {
             outside(f, "gear", "face_width_mm", 0,
                     mm(f.pump.gear.pitch_diameter) / (4 * std::cos(f.g.tilt / 2)),
                     "half the distance of the teeth from where the axes meet")});
+     }},
+    // Transfer
+    {"cardan-tilt", "a single universal joint at a tilt above 25 deg", has_cardan,
+     [](const Facts& f) {
+       const double c = std::cos(f.g.tilt);
+       return outside("tilt_deg", deg(f.g.tilt), 0, kCardanTilt, "deg",
+                      fmt::format("one universal joint makes the block's speed ripple by {:.3g} % "
+                                  "of the shaft's, and its side couple reach {:.3g} of the torque",
+                                  100 * (1 / c - c), std::tan(f.g.tilt)));
+     }},
+    {"wall-clearance",
+     "pistons carry the block, and the clearance leaves it no free play at some angle, or more "
+     "than 5 deg of it",
+     has_walls,
+     [](const Facts& f) -> std::string {
+       const double clearance = mm(f.pump.transfer.wall->clearance);
+       const double swing =
+           f.walls->share * mm(f.g.joint_circle_radius) * (1 - std::cos(f.g.tilt)) / 2;
+       if (is_computed(f.walls->without_deg))
+         return fmt::format(
+             "clearance_mm = {:.6g} leaves the block no free play at {:.4g} deg: it must exceed "
+             "about {:.4g} mm, (1 - l_c/b1) Ra (1 - cos tilt)/2, and leave a piston that can "
+             "touch{}",
+             clearance, f.walls->without_deg, swing,
+             guess(clearance, swing, 2 * swing,
+                   {kTenfold, kTenth, kRadius, kDiameter, kMetres, kMicrometres}));
+       if (deg(f.walls->widest) <= kWidePlay) return "";
+       return fmt::format(
+           "clearance_mm = {:.6g} leaves the block {:.3g} deg of free play at {:.4g} deg, above "
+           "{:.4g}: the ports' timing would shift by as much; the pistons swing by about {:.4g} "
+           "mm{}",
+           clearance, deg(f.walls->widest), f.walls->widest_deg, kWidePlay, swing,
+           guess(clearance, swing, 1.2 * swing, {kTenth, kDiameter}));
+     }},
+    {"wall-stiffness", "pistons carry the block on walls outside {0:g} .. {1:g} N/um", "transfer",
+     "stiffness_N_per_um", has_walls},
+    {"wall-damping",
+     "a wall whose damping leaves no force where the piston that carries leaves it, at the case's "
+     "speed",
+     has_walls,
+     [](const Facts& f) -> std::string {
+       const double dissipation = f.pump.transfer.wall->dissipation;
+       if (dissipation * f.walls->leaving < 1) return "";
+       return fmt::format(
+           "dissipation_s_per_m = {:.6g} leaves a wall no force where a piston leaves it faster "
+           "than {:.4g} mm/s: the piston that carries does so at {:.4g} mm/s ({:.4g} deg, {:.6g} "
+           "rpm)",
+           dissipation, 1e3 / dissipation, 1e3 * f.walls->leaving, f.walls->leaving_deg, f.speed);
+     }},
+    {"wall-contact",
+     "the contact point of the pistons below half the stroke from A (outside the bore for more "
+     "than half of the turn) or behind the ring, in the chamber",
+     has_walls,
+     [](const Facts& f) {
+       const double ring = f.pump.piston.contact.value_or(f.g.piston_length);
+       return outside(f, "transfer", "contact_from_joint_mm", mm(f.derived.stroke) / 2, mm(ring),
+                      fmt::format("the joints enter the block by half the stroke of {:.4g} mm, and "
+                                  "the ring is {:.4g} mm from A",
+                                  mm(f.derived.stroke), mm(ring)),
+                      {kTenfold, kCentimetres, kMetres, kTenth});
+     }},
+    {"piston-touches-bore",
+     "a gear or a joint drives the block, and by contact_from_joint_mm and clearance_mm a piston "
+     "tilts so far that it touches its bore",
+     has_unused_walls,
+     [](const Facts& f) -> std::string {
+       const WallContact& wall = *f.pump.transfer.wall;
+       const AssemblyMargin margin = assembly_margin(f.pump);
+       const double off = (1 - wall.from_joint / f.g.piston_length) * margin.longest_distance;
+       if (off <= wall.clearance) return "";
+       return fmt::format(
+           "a piston's axis is {:.4g} mm from that of its bore at {:.4g} deg, "
+           "contact_from_joint_mm = {:.6g} from A: above clearance_mm = {:.6g}, the piston touches "
+           "its bore, and [transfer] kind = \"{}\" leaves that out",
+           mm(off), margin.theta_deg, mm(wall.from_joint), mm(wall.clearance),
+           to_string(f.pump.transfer.kind));
      }},
     // Bearings
     {"bearing-side", "a bearing at z1 > -Ra/4: on the pistons' side, or in the plane of the joints",

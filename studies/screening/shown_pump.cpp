@@ -3,12 +3,18 @@
 #include <utility>
 
 #include "bentaxis/study/timing.h"
+#include "bentaxis/study/transfer_summary.h"
 #include "bentaxis/study/turn_summary.h"
 
 namespace bentaxis::study {
 
 std::vector<std::string> ShownPump::answers() const {
   std::vector<std::string> sentences = TurnSummary(run.table).answers();
+  const PumpParameters& pump = ready.the_case.pump;
+  for (std::string& sentence : TransferSummary(pump, run.table).answers())
+    sentences.push_back(std::move(sentence));
+  if (std::string play = free_play_answer(pump); !play.empty())
+    sentences.push_back(std::move(play));
   for (std::string& sentence : limit_answers(limits)) sentences.push_back(std::move(sentence));
   if (ready.hydraulics)
     sentences.push_back(timing_answer(timing_rows(ready.the_case, *ready.hydraulics)));

@@ -49,6 +49,18 @@ std::string small_components(const compare::Comparison& comparison) {
       compare::kSmallComponent, text);
 }
 
+// A table's values in the columns of another: not computed where it has none of that name.
+ResultTable in_columns_of(const ResultTable& columns, const ResultTable& table) {
+  ResultTable same = columns;
+  for (std::size_t c = 0; c < same.columns(); ++c) {
+    const std::size_t from = table.find(same.channels[c].name);
+    for (std::size_t row = 0; row < same.rows(); ++row)
+      same.values[row * same.columns() + c] =
+          from < table.columns() ? table.at(row, from) : not_computed();
+  }
+  return same;
+}
+
 // The comparison while it is made.
 class Maker {
  public:
@@ -198,6 +210,7 @@ double Maker::torque_driven_speed_error(const multibody::IntegrationOptions& int
     for (int k = 1; k <= samples_.pistons; ++k)
       instant.chamber_pressure[k - 1] =
           r.first.pressure(piston_angle_deg(theta_deg, k, samples_.pistons));
+    model.place_at_constant_speed(instant, r.first.pressure);
     model.reactions(instant, values);
     return values[model.layout().Td()];
   };
@@ -252,7 +265,14 @@ compare::Options Maker::comparison_options() const {
 // of the film force where there is none (53).
 bool Maker::may_be_missing(const Channel& channel, std::size_t row) const {
   const ComparisonResult& r = result_;
+  const auto has = [&](const PreparedCase& ready) {
+    const auto& all = ChannelLayout(ready.the_case.pump).channels();
+    return std::any_of(all.begin(), all.end(),
+                       [&](const Channel& c) { return c.name == channel.name; });
+  };
+  if (r.options.split_transfer && !(has(r.first) && has(r.second))) return true;
   if (!exists_at_constant_speed(r.first.the_case.pump, channel) ||
+      !exists_at_constant_speed(r.second.the_case.pump, channel) ||
       !computes({}, r.first.the_case.analytic, channel) ||
       !computes(multibody_run(0), r.second.the_case.multibody, channel))
     return true;
@@ -286,11 +306,12 @@ void Maker::split_assumptions() {
   ComparisonResult& r = result_;
   const Assumptions& from = r.first.the_case.analytic;
   const Assumptions& to = r.second.the_case.multibody;
-  using Change = void (*)(Assumptions&, const Assumptions&);
+  // Of assumptions and transfer of a variant towards those of the second case.
+  using Change = void (*)(Assumptions&, Case&, const Case& to);
   const Change all_changes[] = {
-      [](Assumptions& a, const Assumptions& b) { a.piston_friction = b.piston_friction; },
-      [](Assumptions& a, const Assumptions& b) { a.inertia = b.inertia; },
-      [](Assumptions& a, const Assumptions& b) { a.gear = b.gear; }};
+      [](Assumptions& a, Case&, const Case& b) { a.piston_friction = b.multibody.piston_friction; },
+      [](Assumptions& a, Case&, const Case& b) { a.inertia = b.multibody.inertia; },
+      [](Assumptions& a, Case&, const Case& b) { a.gear = b.multibody.gear; }};
   const auto from_words = in_words(from);
   const auto to_words = in_words(to);
   std::vector<Change> changes;
@@ -301,6 +322,17 @@ void Maker::split_assumptions() {
     names.push_back(from_words[i].first);
     changes.push_back(all_changes[i]);
   }
+  const TransferKind kinds[] = {r.first.the_case.pump.transfer.kind,
+                                r.second.the_case.pump.transfer.kind};
+  const bool other_transfer = r.options.split_transfer && kinds[0] != kinds[1];
+  if (other_transfer) {
+    r.changes.push_back({"transfer", to_string(kinds[0]), to_string(kinds[1])});
+    names.emplace_back("transfer");
+    changes.push_back([](Assumptions&, Case& variant, const Case& b) {
+      variant.pump.transfer = b.pump.transfer;
+      variant.pump.gear = b.pump.gear;
+    });
+  }
   // The closed form knows involutes alone: what another shape does is seen in the other model.
   std::optional<ModelRun> involutes;
   const unsigned shape = 1U << names.size();
@@ -308,7 +340,7 @@ void Maker::split_assumptions() {
   if (other_shape) {
     r.changes.push_back({"flanks of the teeth", to_string(from.flanks), to_string(to.flanks)});
     names.emplace_back("flanks of the teeth");
-    changes.push_back([](Assumptions&, const Assumptions&) {});
+    changes.push_back([](Assumptions&, Case&, const Case&) {});
     RunOptions options = multibody_run(0);
     options.assumptions = to;
     options.assumptions->flanks = from.flanks;
@@ -318,9 +350,15 @@ void Maker::split_assumptions() {
   if (names.empty()) return;
   const auto run_of = [&](unsigned mask, bool budget) {
     RunOptions options{.assumptions = from, .budget = budget};
+    PreparedCase ready{r.first.the_case, r.first.hydraulics,
+                       PressureTrace(r.first.the_case.pressure)};
     for (std::size_t i = 0; i < changes.size(); ++i)
-      if ((mask & (1U << i)) != 0) changes[i](*options.assumptions, to);
-    return study::run(r.first, samples_, options);
+      if ((mask & (1U << i)) != 0)
+        changes[i](*options.assumptions, ready.the_case, r.second.the_case);
+    ModelRun run = study::run(ready, samples_, options);
+    // Another transfer has other columns.
+    if (other_transfer) run.table = in_columns_of(r.analytic, run.table);
+    return run;
   };
   const auto shaped = [&](unsigned mask, ResultTable table, const ResultTable& other,
                           const ResultTable& involute) {

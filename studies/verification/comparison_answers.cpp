@@ -8,6 +8,7 @@
 
 #include "bentaxis/study/lost_digits.h"
 #include "bentaxis/study/timing.h"
+#include "bentaxis/study/transfer_summary.h"
 #include "bentaxis/study/turn_summary.h"
 
 namespace bentaxis::study {
@@ -79,6 +80,10 @@ std::vector<std::string> comparison_answers(const ComparisonResult& r) {
       if (std::string text = contribution_text(*r.split, a); !text.empty())
         sentences.push_back(std::move(text));
   append_all(sentences, TurnSummary(r.analytic).answers());
+  const PumpParameters& pump = r.first.the_case.pump;
+  append_all(sentences, TransferSummary(pump, r.analytic).answers());
+  if (std::string play = free_play_answer(pump); !play.empty())
+    sentences.push_back(std::move(play));
   append_all(sentences, limit_answers(r.limits));
   if (r.first.hydraulics)
     sentences.push_back(timing_answer(timing_rows(r.first.the_case, *r.first.hydraulics)));

@@ -34,7 +34,7 @@ compare::Facts facts_of(const Case& the_case, const Assumptions& assumptions) {
   const PumpParameters& pump = the_case.pump;
   const PortPressures& ports = the_case.pressure.ports;
   const double speed = the_case.operation.speed_rpm;
-  const double displacement = analytic::derived_quantities(pump.geometry).displacement;
+  const double displacement = analytic::derived_quantities(pump).displacement;
   const bool friction = assumptions.piston_friction &&
                         (pump.friction.piston_coulomb > 0 || pump.friction.piston_viscous > 0);
   const double block_viscous = pump.friction.block_viscous * kRadPerSecondPerRpm;

@@ -54,7 +54,8 @@ struct BatchInstants {
 
 /// Where results go: one pointer per reaction in the order of ChannelLayout, to `count` doubles, or
 /// null for a channel that is not asked for. Where only channels of pistons are asked for, block
-/// and shaft are not solved. Nothing need be aligned; arrays must not overlap.
+/// and shaft are not solved. Longer, by the places of ChannelLayout: the couple Tcs of a joint as
+/// well; no other derived channel is written. Nothing need be aligned; arrays must not overlap.
 using BatchOutputs = std::vector<double*>;
 
 /// How a batch is evaluated.

@@ -12,6 +12,9 @@
 #include "bentaxis/results/instant.h"
 
 namespace bentaxis::analytic {
+namespace closed_form {
+struct Common;
+}
 
 /// A pump's numbers as rates: all 0, with the parts that `pump` has. For use as a direction, once
 /// some of them are set.
@@ -34,7 +37,8 @@ class DerivativeModel {
   const ChannelLayout& layout() const { return layout_; }
   std::size_t directions() const { return directions_; }
 
-  /// Reactions as Model::reactions, of a block that is locked to the shaft, and their derivatives.
+  /// Reactions as Model::reactions, of a block that is locked to the shaft or that a joint drives,
+  /// and their derivatives.
   /// At a kink (a flank that changes, dry friction at rest) those of one side.
   /// @param rates        one per direction: rates of angle, speed and acceleration of the shaft, of
   ///                     the chamber pressures (none: 0) and of the port pressures
@@ -45,7 +49,18 @@ class DerivativeModel {
   void reactions(const Instant& instant, std::span<const Instant> rates, std::span<double> values,
                  std::span<double> derivatives) const;
 
+  /// The couple Tcs of a joint, x, y and z in S2, and its derivatives likewise.
+  /// @param values       at least 3 long
+  /// @param derivatives  directions() times as long
+  /// @throws InputError where no joint drives the block, and as reactions()
+  void joint_couple(const Instant& instant, std::span<const Instant> rates,
+                    std::span<double> values, std::span<double> derivatives) const;
+
  private:
+  template <class Put>
+  void differentiate(const closed_form::Common& common, const Instant& instant,
+                     std::span<const Instant> rates, const Put& put) const;
+
   struct Prepared;
   ChannelLayout layout_;
   std::size_t directions_;

@@ -18,4 +18,9 @@ struct DerivedQuantities {
 /// a quadratic.
 DerivedQuantities derived_quantities(const Geometry& geometry);
 
+/// The same of a pump with its transfer. With a universal joint each piston has its own trajectory:
+/// displacement is A times the sum of the strokes, stroke is their mean, and tilts are the extremes
+/// of all pistons. With pistons that drive the block all are those of a block without lag.
+DerivedQuantities derived_quantities(const PumpParameters& pump);
+
 }  // namespace bentaxis::analytic

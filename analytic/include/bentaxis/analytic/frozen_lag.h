@@ -6,6 +6,13 @@
 
 namespace bentaxis::analytic {
 
+/// Lags, in rad, at which no piston touches its bore, at one angle of the shaft (T11).
+struct FreePlay {
+  double low = 0, high = 0;
+  int low_piston = 0, high_piston = 0;  ///< which touches at that end, from 0
+  bool exists = false;                  ///< false: a piston touches always, or none can
+};
+
 /// Where a block that pistons carry round stands at constant speed: the rule of docs/transfer.md
 /// that decided.
 struct FrozenLag {

@@ -76,6 +76,8 @@ class Model {
   ///         lag balances the block before a piston leaves its bore
   void place_at_constant_speed(Instant& instant, const PressureTrace& pressure,
                                LagRules* rules = nullptr) const;
+  /// The play of a block that pistons carry, at an angle of the shaft in rad.
+  FreePlay free_play(double theta) const;
   /// The lag alone, of pistons that carry the block.
   FrozenLag frozen_lag(const Instant& instant, const PressureTrace& pressure) const;
 

@@ -28,7 +28,7 @@ class RoundingEstimate {
   RoundingEstimate(const PumpParameters& pump, const Assumptions& assumptions);
 
   /// Error of every reaction at an instant, SI, ordered by the model's layout. 0 where a reaction
-  /// is not computed.
+  /// is not computed, and of other channels.
   struct Parts {
     std::vector<double> inputs;
     std::vector<double> arithmetic;
@@ -36,8 +36,11 @@ class RoundingEstimate {
   };
 
   /// @param pressure_rounding  Pa, by how much each chamber pressure may be off
-  void estimate(const Instant& instant, const std::vector<double>& pressure_rounding,
-                Parts& parts) const;
+  /// @param trace              where pistons drive the block: their pressures. Each evaluation then
+  ///                           finds the block's lag itself, and the instant is one of constant
+  ///                           speed
+  void estimate(const Instant& instant, const std::vector<double>& pressure_rounding, Parts& parts,
+                const PressureTrace* trace = nullptr) const;
 
   const ChannelLayout& layout() const { return model_.layout(); }
 

@@ -304,6 +304,10 @@ AssemblyMargin assembly_margin(const Geometry& geometry);
 /// The same of a pump, for every piston: with a universal joint each has a trajectory of its own.
 AssemblyMargin assembly_margin(const PumpParameters& pump);
 
+/// psi - theta of a block that a joint drives, rad: 0 unless the joint is a universal joint. Where
+/// nothing prescribes the block (compliant teeth, pistons) that of a block without lag.
+double block_lead(const PumpParameters& pump, double theta);
+
 /// Distance of a joint A at the angle theta of the shaft from the axis of its bore at the angle psi
 /// of the block, m: what a piston's length must exceed. Angles in rad.
 double joint_distance(const Geometry& geometry, double theta, double psi);

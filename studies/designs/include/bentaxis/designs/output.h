@@ -78,8 +78,10 @@ std::vector<std::string> output_names(const Case& base);
 /// A statistic of the values of a turn.
 double statistic_of(Statistic statistic, const std::vector<double>& values);
 
-/// A number that follows from the geometry alone: of Source::derived.
-double derived_value(const Output& output, const Geometry& geometry);
+/// A number that follows from the geometry and the transfer alone: of Source::derived.
+double derived_value(const Output& output, const PumpParameters& pump);
+[[deprecated("pass the pump: a universal joint changes the strokes")]] double derived_value(
+    const Output& output, const Geometry& geometry);
 
 /// The numbers of one design from the tables of one of its models.
 /// @return one per output; not_computed() where the model does not give it

@@ -40,6 +40,8 @@ struct ComparisonOptions {
   /// Printed numbers to hold the results to (reference_data/published); empty: none.
   std::filesystem::path published;
   std::filesystem::path with;  ///< a reference to hold both models to as well; empty: none
+  /// The cases differ in what drives the block: split from the difference as an assumption.
+  bool split_transfer = false;
   bool loads = false;          ///< all loads on the bodies too, of a driven run of full pumps
 };
 

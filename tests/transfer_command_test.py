@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+"""[transfer] from outside: key figures, columns, two transfers compared, variables of designs, refusals.
+
+usage: transfer_command_test.py BENTAXIS REPO_ROOT [options of unittest]
+"""
+
+import json
+import math
+import pathlib
+import re
+import sys
+import unittest
+
+import command_line_test as program
+from command_line_test import ProgramTest
+
+FEW = ("--set", "operation.samples_per_revolution=72")
+
+
+class TransferTest(ProgramTest):
+    def case_of(self, name):
+        return program.REPO / "cases" / f"bap63_{name}.toml"
+
+    def figures(self, report):
+        """Key figures of a report by quantity: values of the models."""
+        rows = json.loads((self.folder / report / "report.json").read_text())["key_figures"]["rows"]
+        return {row["quantity"]: row["values"] for row in rows}
+
+    def test_console_says_first_what_the_block_does(self):
+        said = self.run_program("run", self.case_of("cardan"), *FEW, "--model", "analytic", "--out", "joint").out
+        tilt = math.radians(20)
+        ripple = re.search(r"ripple ([0-9.]+) % of the mean", said)
+        self.assertAlmostEqual(float(ripple[1]), 100 * (1 / math.cos(tilt) - math.cos(tilt)), delta=0.1)
+        self.assertRegex(said, r"Side couple of the joint: up to [0-9.]+ Nm on the block")
+        self.assertRegex(said, r"Dead centres of the pistons, by the angle psi_k of the bore: -?[0-9.]+ to")
+        said = self.run_program("run", self.case_of("tapered_pistons"), *FEW, "--model", "analytic", "--out", "walls").out
+        self.assertRegex(said, r"Block: [0-9.]+ to [0-9.]+ deg behind the shaft\.")
+        self.assertRegex(said, r"Walls: largest force [0-9.]+ N at [0-9.]+ deg \(piston \d\); \d+ hand-overs per turn")
+        self.assertRegex(said, r"Free play of the block: [0-9.]+ to [0-9.]+ deg\.")
+        said = self.run_program("run", self.case_of("rated"), *FEW, "--model", "analytic", "--out", "gear").out
+        self.assertNotRegex(said, "Dead centres|Walls|Side couple|Free play")
+
+    def test_both_models_and_commands_state_the_same_figures(self):
+        for name in ("constant_velocity", "cardan", "tapered_pistons"):
+            with self.subTest(name):
+                self.run_program("compare", self.case_of(name), *FEW, "--out", name)
+                figures = self.figures(name)
+                self.assertIn("inner dead centre, earliest of the pistons", figures)
+                for quantity, values in figures.items():
+                    self.assertEqual(len(values), 2, quantity)
+                    self.assertAlmostEqual(values[0], values[1], delta=1e-6 * (1 + abs(values[0])), msg=quantity)
+                self.run_program("show", self.case_of(name), *FEW, "--out", f"{name}_shown")
+                for quantity, values in self.figures(f"{name}_shown").items():
+                    self.assertAlmostEqual(values[0], figures[quantity][0], delta=1e-9 * (1 + abs(values[0])), msg=quantity)
+
+    def test_displacement_is_one_number_in_all_commands(self):
+        """The sum of all strokes, with a universal joint of 20 deg and an axis offset."""
+        case = self.case_of("cardan")
+        shown = self.start("show", case, *FEW, "--out", "shown")
+        shown.out, shown.err = shown.communicate(timeout=program.SECONDS)
+        said = float(re.search(r"pump: ([0-9.]+) cm3/rev", shown.err)[1])
+        derived = {row["quantity"]: row["value"] for row in json.loads((self.folder / "shown" / "report.json").read_text())["derived"]}
+        self.run_program("sweep", case, *FEW, "--vary", "transfer.phase_deg=0:90:#2", "--output", "displacement_cm3", "--out", "swept")
+        swept = [float(x) for x in self.column("swept/sweep.csv", "displacement_cm3")]
+        self.assertAlmostEqual(swept[0], derived["displacement"], delta=1e-9 * swept[0])
+        self.assertAlmostEqual(said, derived["displacement"], delta=1e-3 * said)
+        self.assertNotEqual(swept[0], swept[1])
+        # By the places of B that a run has.
+        self.run_program("run", case, "--set", "operation.samples_per_revolution=720", "--model", "analytic", "--out", "run")
+        strokes = 0
+        for k in range(1, 6):
+            z = [float(x) for x in self.column("run/analytic.csv", f"zB_{k}_z2_mm")]
+            strokes += max(z) - min(z)
+        self.assertAlmostEqual(math.pi / 4 * 22.5**2 * strokes * 1e-3, swept[0], delta=1e-4 * swept[0])
+
+    def test_torque_from_outside_is_a_column_of_given_states_alone(self):
+        case = self.case_of("tapered_pistons")
+        (self.folder / "states.csv").write_text("theta_deg,psi_deg,theta_rpm,psi_rpm,theta_rad_per_s2,psi_rad_per_s2\n10,9.5,1500,1500,0,100\n")
+        self.run_program("run", case, "--model", "analytic", "--states", "states.csv", "--out", "states")
+        heading, rows = self.read_csv("states/analytic.csv")
+        self.assertNotEqual(rows[0][heading.index("Tb_z2_Nm")], "")
+        for model in ("analytic", "multibody"):
+            self.run_program("run", case, *FEW, "--model", model, "--out", "turn")
+            heading, _ = self.read_csv(f"turn/{model}.csv")
+            self.assertNotIn("Tb_z2_Nm", heading)
+            at = heading.index("lag_deg")
+            self.assertEqual(heading[at - 1:at + 2], ["psi_deg", "lag_deg", "p_1_bar"])
+
+    def test_two_transfers_are_an_assumption(self):
+        case = self.case_of("rated")
+        self.run_program("compare", case, *FEW, "--multibody", "transfer=constant_velocity", "--out", "split")
+        report = json.loads((self.folder / "split" / "report.json").read_text())
+        self.assertEqual(report["verdict"]["word"], "Explained")
+        # The same block with another law of its angle; what the pump's gear does not know has to be there.
+        self.run_program("compare", case, *FEW, "--multibody", "transfer=cardan", "inertia=lumped", "--out", "cardan")
+        self.run_program("compare", self.case_of("constant_velocity"), *FEW, "--analytic", "transfer=cardan", "piston_friction=off",
+                         "--out", "both")
+        # A wrong parameter is no part of the assumption.
+        line = self.refused("compare", case, *FEW, "--multibody", "transfer=pistons", "--out", "none")
+        self.assert_mentions(line, "[transfer]", "contact_from_joint_mm")
+        line = self.refused("compare", self.case_of("cardan"), *FEW, "--multibody", "transfer=gear", "--out", "none")
+        self.assert_mentions(line, "[gear]")
+        line = self.refused("compare", case, "--multibody", "transfer=chain", "--out", "none")
+        self.assert_mentions(line, "transfer", "chain", "cardan")
+        line = self.refused("compare", case, "--multibody", "transfer=cardan", "--multibody-case", case, "--out", "none")
+        self.assert_mentions(line, "--multibody-case", "transfer=")
+
+    def test_transfer_is_varied_by_all_studies(self):
+        walls, joint = self.case_of("tapered_pistons"), self.case_of("cardan")
+        few = ("--set", "operation.samples_per_revolution=36")
+        self.run_program("sweep", walls, *few, "--vary", "transfer.clearance_mm=1.5:1.7:#3", "--output", "mean:Td,max:lag_deg", "--out", "sweep")
+        lags = [float(x) for x in self.column("sweep/sweep.csv", "max:lag_deg")]
+        self.assertEqual(lags, sorted(lags))
+        self.assertGreater(lags[2], lags[0] + 1)
+        self.run_program("sensitivity", walls, *few, "--vary", "transfer.clearance_mm,transfer.stiffness_N_per_um", "--output", "mean:Td",
+                         "--out", "sensitivity")
+        self.assertTrue(all(math.isfinite(float(x)) for x in self.column("sensitivity/sensitivity.csv", "derivative")))
+        self.assertEqual(set(self.column("sensitivity/sensitivity.csv", "found_by")), {"differences"})
+        self.run_program("uncertainty", joint, *few, "--vary", "transfer.phase_deg=uniform(0, 90)", "--samples", 150, "--output",
+                         "mean:Td,displacement_cm3", "--out", "uncertainty")
+        self.run_program("optimise", joint, *few, "--vary", "transfer.phase_deg=0:90", "--minimise", "peak:Rb1", "--population", 8,
+                         "--generations", 2, "--restarts", 1, "--comparison", "no", "--out", "optimise")
+        # A design that cannot be is one line, the others go on.
+        self.run_program("sweep", walls, *few, "--vary", "transfer.kind=gear,pistons", "--output", "mean:Td", "--out", "kinds")
+        reasons = self.column("kinds/sweep.csv", "reason")
+        self.assertIn("[gear]", reasons[0])
+        self.assertEqual(reasons[1], "")
+
+    def test_what_pistons_do_not_have_is_refused(self):
+        walls = self.case_of("tapered_pistons")
+        words = "[transfer] kind = \"pistons\": must be of another kind"
+        self.assert_mentions(self.refused("fmu", walls, "--set", "block.axial_inertia_kg_mm2=2500", "--out", "x.fmu"), words)
+        line = self.refused("run", walls, "--model", "multibody", "--way", "integrated", "--out", "none")
+        self.assert_mentions(line, "pistons")
+        line = self.refused("run", self.case_of("rated_hydraulic"), "--model", "analytic", "--set", "transfer.kind=cardan", "--out", "none")
+        self.assert_mentions(line, "[pressure] kind", "cardan")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    program.PROGRAM, program.REPO = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
