@@ -42,7 +42,7 @@ struct ComparisonOptions {
   std::filesystem::path with;  ///< a reference to hold both models to as well; empty: none
   /// The cases differ in what drives the block: split from the difference as an assumption.
   bool split_transfer = false;
-  bool loads = false;          ///< all loads on the bodies too, of a driven run of full pumps
+  bool loads = false;  ///< all loads on the bodies too, of a driven run of full pumps
 };
 
 /// Assumptions in words: name and value.
