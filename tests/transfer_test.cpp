@@ -436,6 +436,9 @@ TEST(FrozenLagOfPistons, HandsOverAsTheGeometrySays) {
 
 // With an offset of the axes pistons carry in one sector alone, near 225 deg for b > 0 and 45 deg
 // for b < 0: N hand-overs for odd and for even N. By positions, and by the largest wall force.
+// The joints' circle is seen as an ellipse from the block, which moves the middle of the sector:
+// by 4.3 deg at most here, so its half width is a half pitch and 6 deg (3 deg, written first, were
+// too few).
 TEST(FrozenLagOfPistons, AnOffsetOfTheAxesMakesOneSectorCarry) {
   for (const double offset : {0.3, -0.3})
     for (const int pistons : {7, 6}) {
@@ -454,7 +457,7 @@ TEST(FrozenLagOfPistons, AnOffsetOfTheAxesMakesOneSectorCarry) {
         const Touch touch = first_touch(the_case, radians(theta_deg));
         const double middle = offset > 0 ? 225 : 45;
         const double at = piston_angle_deg(theta_deg, touch.piston + 1, pistons);
-        EXPECT_LT(std::abs(std::remainder(at - middle, 360)), 180.0 / pistons + 3) << theta_deg;
+        EXPECT_LT(std::abs(std::remainder(at - middle, 360)), 180.0 / pistons + 6) << theta_deg;
         hand_overs += last >= 0 && touch.piston != last;
         if (first < 0) first = touch.piston;
         last = touch.piston;
