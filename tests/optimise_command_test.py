@@ -196,7 +196,7 @@ values = "20:26"
         options = ["--vary", "pump.tilt_deg=25:42", "--minimise", "q95:peak:Rb1", "--subject-to", "q5:displacement_cm3 >= 50",
                    "--samples", "200", "--population", "8", "--generations", "4", "--restarts", "1"]
         done = self.run_program(*options, case=case)
-        self.assertIn("least q95:peak:Rb1 (chosen_1.toml)", done.stdout)
+        self.assertIn("lowest q95:peak:Rb1 (chosen_1.toml)", done.stdout)
         chosen = rows_of(self.out / "front.csv")[0]
         subprocess.run([PROGRAM, "uncertainty", self.out / "chosen_1.toml", "--set", "operation.samples_per_revolution=36", "--output",
                         "peak:Rb1,displacement_cm3", "--samples", "200", "--level", "0.9", "--out", self.folder / "u"],
