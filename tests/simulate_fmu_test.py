@@ -76,7 +76,7 @@ class SimulateFmuTest(FmuTest):
 
             section = self.section()
             facts = dict(section["facts"])
-            self.assertIn(f"FMI {version}.0", facts["unit"])
+            self.assertIn(f"FMI {version}.0", facts["FMU"])
             self.assertEqual(facts["parameter torque"], "330 N.m")
             self.assertEqual(section["table"]["columns"][:3], ["group", "unit", "peak"])
             self.assertIn("Td", [row[0] for row in section["table"]["rows"]])
