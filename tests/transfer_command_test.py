@@ -59,7 +59,7 @@ class TransferTest(ProgramTest):
         shown = self.start("show", case, *FEW, "--out", "shown")
         shown.out, shown.err = shown.communicate(timeout=program.SECONDS)
         said = float(re.search(r"pump: ([0-9.]+) cm3/rev", shown.err)[1])
-        derived = {row["quantity"]: row["value"] for row in json.loads((self.folder / "shown" / "report.json").read_text())["derived"]}
+        derived = {row["name"]: row["value"] for row in json.loads((self.folder / "shown" / "report.json").read_text())["derived"]}
         self.run_program("sweep", case, *FEW, "--vary", "transfer.phase_deg=0:90:#2", "--output", "displacement_cm3", "--out", "swept")
         swept = [float(x) for x in self.column("swept/sweep.csv", "displacement_cm3")]
         self.assertAlmostEqual(swept[0], derived["displacement"], delta=1e-9 * swept[0])
