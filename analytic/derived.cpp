@@ -69,7 +69,7 @@ struct Extremes {
 };
 template <class Function>
 Extremes extremes_of(const Function& value) {
-  constexpr int kAngles = 720;
+  constexpr int kAngles = 72;
   const double step = 2 * kPi / kAngles;
   Extremes found{value(0.0), value(0.0)};
   double low_at = 0, high_at = 0;

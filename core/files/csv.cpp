@@ -436,9 +436,8 @@ std::string csv_text(const std::string& text) {
 
 namespace {
 
-// The torque from outside is that of a given motion: other runs have no such column.
 bool is_written(const ResultTable& table, std::size_t column) {
-  if (table.channels[column].quantity != "Tb") return true;
+  if (!is_of_given_motion(table.channels[column])) return true;
   for (std::size_t row = 0; row < table.rows(); ++row)
     if (is_computed(table.at(row, column))) return true;
   return false;

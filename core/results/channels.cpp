@@ -64,6 +64,8 @@ std::vector<Channel> list_channels(int pistons, TransferKind transfer) {
 
 }  // namespace
 
+bool is_of_given_motion(const Channel& channel) { return channel.quantity == "Tb"; }
+
 ChannelLayout::ChannelLayout(int pistons, TransferKind transfer)
     : n_(pistons), transfer_(transfer) {
   static std::mutex mutex;

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "bentaxis/analytic/budget.h"
-#include "bentaxis/analytic/derived.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/validity.h"
 #include "bentaxis/pump/error.h"
@@ -442,10 +441,14 @@ class Turn {
 
 }  // namespace
 
-double derived_value(const Output& output, const PumpParameters& pump) {
+double derived_value(const Output& output, const analytic::DerivedQuantities& derived) {
   for (const DerivedEntry& d : kDerived)
-    if (output.item == d.name) return d.value(analytic::derived_quantities(pump));
+    if (output.item == d.name) return d.value(derived);
   return not_computed();
+}
+
+double derived_value(const Output& output, const PumpParameters& pump) {
+  return derived_value(output, analytic::derived_quantities(pump));
 }
 
 double derived_value(const Output& output, const Geometry& geometry) {
@@ -489,6 +492,7 @@ std::vector<double> values_of(const std::vector<Output>& outputs, const Case& th
                               study::Model model) {
   std::optional<Turn> turn;
   std::optional<study::MotionAnswers> motion;
+  std::optional<analytic::DerivedQuantities> derived;
   std::vector<TimingRow> timing;
   std::vector<double> values;
   const auto is = [](Source source) {
@@ -499,7 +503,8 @@ std::vector<double> values_of(const std::vector<Output>& outputs, const Case& th
   if (std::none_of(outputs.begin(), outputs.end(), is(Source::motion))) prepared();
   for (const Output& o : outputs) {
     if (o.source == Source::derived) {
-      values.push_back(derived_value(o, the_case.pump));
+      if (!derived) derived = analytic::derived_quantities(the_case.pump);
+      values.push_back(derived_value(o, *derived));
     } else if (o.source == Source::hydraulics) {
       values.push_back(not_computed());
       for (const hydraulics::Line& line : hydraulics::lines(*prepared().hydraulics))

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
@@ -156,10 +157,12 @@ bool TurnStatistics::find(const Case& the_case, std::span<double> results) {
   const analytic::BatchModel& model = turn_.model();
   model.statistics(turn_.instants(), outputs_.measured, statistics_);
   const bool tooth = the_case.analytic.gear == BlockDrive::mesh;
+  std::optional<analytic::DerivedQuantities> derived;  // once for all outputs of a design
   for (std::size_t i = 0; i < results.size(); ++i) {
     const TurnOutputs::Place& place = outputs_.places[i];
     if (place.of_geometry) {
-      results[i] = derived_value(outputs_.geometry[place.measured], the_case.pump);
+      if (!derived) derived = analytic::derived_quantities(the_case.pump);
+      results[i] = derived_value(outputs_.geometry[place.measured], *derived);
       continue;
     }
     const analytic::Statistics& found = statistics_[place.measured];

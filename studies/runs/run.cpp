@@ -221,7 +221,7 @@ void stream_analytic(const PreparedCase& ready, const Assumptions& assumptions,
   std::vector<std::size_t> columns;
   for (std::size_t c = 0; c < model.layout().size(); ++c)
     if (const Channel& channel = model.layout().channels()[c];
-        wanted(channel) && channel.quantity != "Tb") {  // of a given motion alone
+        wanted(channel) && !is_of_given_motion(channel)) {
       columns.push_back(c);
       channels.push_back(channel);
     }

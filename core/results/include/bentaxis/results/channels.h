@@ -28,6 +28,10 @@ struct Channel {
   ChannelKind kind = ChannelKind::reaction;
 };
 
+/// Whether a channel has values at given states of motion alone: the torque on the block from
+/// outside, which is 0 in all other runs.
+bool is_of_given_motion(const Channel& channel);
+
 /// Where each quantity of a pump with N pistons and a kind of transfer stands in a row of results,
 /// and its description. Pistons count from 0 here; axes are 0, 1, 2 for x, y, z. Cheap to make and
 /// to copy.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/analytic/derived.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/results/result_table.h"
 #include "bentaxis/study/run.h"
@@ -80,6 +81,8 @@ double statistic_of(Statistic statistic, const std::vector<double>& values);
 
 /// A number that follows from the geometry and the transfer alone: of Source::derived.
 double derived_value(const Output& output, const PumpParameters& pump);
+/// The same from quantities that are known already: once for all outputs of a design.
+double derived_value(const Output& output, const analytic::DerivedQuantities& derived);
 [[deprecated("pass the pump: a universal joint changes the strokes")]] double derived_value(
     const Output& output, const Geometry& geometry);
 
