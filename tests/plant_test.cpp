@@ -154,7 +154,15 @@ INSTANTIATE_TEST_SUITE_P(
         AsSimulated{"constant_velocity_joint", Drive::speed,
                     [] { return shipped("bap63_constant_velocity", 0.01, 20); }},
         AsSimulated{"universal_joint", Drive::speed,
-                    [] { return shipped("bap63_cardan", 0.01, 20); }}),
+                    [] { return shipped("bap63_cardan", 0.01, 20); }},
+        AsSimulated{"universal_joint_free_shaft", Drive::torque,
+                    [] {
+                      Case c = shipped("bap63_cardan", 0.01, 20);
+                      c.drive->kind = DriveKind::torque;
+                      c.drive->torque = 150;
+                      c.pump.shaft.axial_inertia = c.pump.block.axial_inertia = 2e-3;
+                      return c;
+                    }}),
     [](const auto& parameter) { return parameter.param.name; });
 
 TEST(Plant, PistonsThatTouchAreRefused) {
