@@ -49,8 +49,10 @@ int show(const Options& options) {
   std::optional<study::ShownPump> pump;
   if (report || figures) pump = study::show_pump(the_case, progress_of);
   std::printf("%s\n", the_case.name.c_str());
-  if (pump)
+  if (pump) {
     for (const std::string& answer : pump->answers()) std::printf("%s\n", answer.c_str());
+    std::printf("\n");
+  }
   for (const auto& quantity : study::derived_section(the_case))
     std::printf("  %-22s %10.5g %s\n", quantity.name.c_str(), quantity.value,
                 quantity.unit.c_str());
