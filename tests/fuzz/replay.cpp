@@ -81,12 +81,18 @@ void keep_input(int) {
 int main(int argc, char** argv) {
   using Reader = void (*)(const std::uint8_t*, std::size_t);
   const std::map<std::string, Reader> readers = {
+#ifdef BENTAXIS_FUZZ_DESIGNS
+      {"block", bentaxis::fuzz::read_as_block},
+      {"study", bentaxis::fuzz::read_as_study},
+      {"data", bentaxis::fuzz::read_as_data}
+#else
       {"case", bentaxis::fuzz::read_as_case},   {"csv", bentaxis::fuzz::read_as_csv},
       {"curve", bentaxis::fuzz::read_as_curve}, {"drive", bentaxis::fuzz::read_as_drive},
       {"set", bentaxis::fuzz::read_as_change},  {"states", bentaxis::fuzz::read_as_states},
       {"mat", bentaxis::fuzz::read_as_matlab},  {"xlsx", bentaxis::fuzz::read_as_workbook},
-      {"fmu", bentaxis::fuzz::read_as_fmu},     {"block", bentaxis::fuzz::read_as_block},
-      {"study", bentaxis::fuzz::read_as_study}, {"data", bentaxis::fuzz::read_as_data}};
+      {"fmu", bentaxis::fuzz::read_as_fmu}
+#endif
+  };
   if (argc != 4 || readers.count(argv[1]) == 0) {
     std::string kinds;
     for (const auto& [kind, reader] : readers) kinds += (kinds.empty() ? "" : "|") + kind;
