@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -173,11 +174,33 @@ TEST(KeyFiguresTest, PistonsThatCarryHandOver) {
   EXPECT_EQ(values_of("pistons that push at a time, at most"), std::vector<double>{2});
   ASSERT_EQ(values_of("lag of the block, largest").size(), 1);
   EXPECT_NEAR(values_of("lag of the block, largest")[0], 1.35, 1e-12);
+  EXPECT_EQ(values_of("angle from which piston 1 carries most"), std::vector<double>{0});
+  EXPECT_EQ(values_of("angle to which piston 1 carries most"), std::vector<double>{110});
   const auto peaks = turn_figures({&made});
   const auto* wall = find(peaks, "Rw", "N");
   ASSERT_NE(wall, nullptr);
   EXPECT_EQ(wall->note, "piston 2");
   EXPECT_EQ(wall->at.value(), 120);
+}
+
+// Where a piston carries over the end of the turn, its sector is one and ends above 360 deg.
+TEST(KeyFiguresTest, ASectorMayCloseTheTurn) {
+  PumpParameters pump;
+  pump.geometry.pistons = 2;
+  pump.transfer.kind = TransferKind::pistons;
+  ResultTable made;
+  made.name = "only";
+  made.channels = ChannelLayout(pump).channels();
+  for (int i = 0; i < 36; ++i) made.theta_deg.push_back(10.0 * i);
+  made.values.assign(made.rows() * made.columns(), 0);
+  for (std::size_t row = 0; row < made.rows(); ++row)
+    value(made, row < 9 || row >= 27 ? "Rw_1_x2_N" : "Rw_2_x2_N", row) = 100;
+  std::map<std::string, double> figures;
+  for (const auto& row : transfer_figures({&made}, pump))
+    EXPECT_TRUE(figures.emplace(row.quantity, row.values.at(0)).second) << row.quantity;
+  EXPECT_EQ(figures["angle from which piston 1 carries most"], 270);
+  EXPECT_EQ(figures["angle to which piston 1 carries most"], 440);
+  EXPECT_EQ(figures["hand-overs from piston to piston per turn"], 2);
 }
 
 TEST(KeyFiguresTest, WhatTheOilDoesIsInUnitsOfTheField) {

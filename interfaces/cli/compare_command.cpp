@@ -35,10 +35,19 @@ struct Options {
 // What drives the block is an assumption that the case file says too: it is read as a change of it.
 constexpr char kTransfer[] = "transfer=";
 bool is_transfer(const std::string& text) { return text.starts_with(kTransfer); }
-Case read_with(CaseOption of, const std::vector<std::string>& assumptions) {
-  for (const std::string& text : assumptions)
-    if (is_transfer(text))
-      of.changes.push_back("transfer.kind=" + text.substr(std::size(kTransfer) - 1));
+Case read_with(CaseOption of, const std::string& option,
+               const std::vector<std::string>& assumptions) {
+  for (const std::string& text : assumptions) {
+    if (!is_transfer(text)) continue;
+    const std::string kind = text.substr(std::size(kTransfer) - 1);
+    const auto is_named = [&](TransferKind known) { return to_string(known) == kind; };
+    constexpr TransferKind kKinds[] = {TransferKind::gear, TransferKind::constant_velocity,
+                                       TransferKind::cardan, TransferKind::pistons};
+    if (std::none_of(std::begin(kKinds), std::end(kKinds), is_named))
+      throw InputError(option + " " + text +
+                       ": must be transfer=gear|constant_velocity|cardan|pistons");
+    of.changes.push_back("transfer.kind=" + kind);
+  }
   return of.read();
 }
 
@@ -52,10 +61,10 @@ int compare(const Options& options) {
     throw InputError(
         "--multibody-case: must be left out beside an assumption transfer=..: the other case says "
         "itself what drives its block");
-  Case first = read_with(options.the_case, options.analytic);
+  Case first = read_with(options.the_case, "--analytic", options.analytic);
   std::optional<Case> second;
   if (transfer)
-    second = read_with(options.the_case, options.multibody);
+    second = read_with(options.the_case, "--multibody", options.multibody);
   else if (!options.multibody_case.empty())
     second = CaseOption{options.multibody_case, options.the_case.changes, options.the_case.strict}
                  .read();
