@@ -70,7 +70,7 @@ void HybridIntegrator::start(double time, const SystemState& state) {
   std::fill(integrals_.begin(), integrals_.end(), 0.0);
   edges_.find(block(time_, state_));
   set_interval();
-  start_teeth();
+  start_contacts();
   system_.forget();
   restart_ = true;
 }
@@ -99,49 +99,56 @@ void HybridIntegrator::set_interval() {
   system_.to = edges_.to();
 }
 
-void HybridIntegrator::start_teeth() {
-  touching_ = {};
+bool HybridIntegrator::touching() const {
+  return std::any_of(touching_.begin(), touching_.end(), [](const Touching& t) { return t.now; });
+}
+
+void HybridIntegrator::start_contacts() {
+  touching_.assign(contacts().size(), {});
   Mechanics& mechanics = system_.mechanics();
-  if (!mechanics.compliant()) return;
-  for (const int flank : {1, -1}) {
-    const double x = mechanics.approach(time_, state_.motion, flank);
-    double rate = mechanics.approach_rate(time_, state_.motion, flank);
+  for (std::size_t i = 0; i < contacts().size(); ++i) {
+    const double x = mechanics.approach(time_, state_.motion, contacts()[i]);
+    double rate = mechanics.approach_rate(time_, state_.motion, contacts()[i]);
     if (x < -kOnTouch) continue;
     if (x <= kOnTouch && rate == 0) {
-      // Without force between the flanks: which way they begin to move.
+      // Without force between them: which way they begin to move.
       std::vector<double> dy(system_.scale().size());
       system_.scaled(state_, y_);
       if (!system_.rates(time_, y_.data(), dy.data())) continue;
       MotionVector moving{};
-      for (std::size_t i = 0; i < system_.active().size(); ++i)
-        if (system_.active()[i] == kLagRate) moving[kLagRate] = dy[i] * system_.scale()[i];
-      rate = mechanics.approach_rate(time_, moving, flank);
+      for (std::size_t j = 0; j < system_.active().size(); ++j)
+        if (system_.active()[j] == kLagRate) moving[kLagRate] = dy[j] * system_.scale()[j];
+      rate = mechanics.approach_rate(time_, moving, contacts()[i]);
     }
     if (x <= kOnTouch && rate <= 0) continue;
-    contact_changes(flank, true);
+    contact_changes(i, true);
   }
 }
 
-void HybridIntegrator::contact_changes(int flank, bool touch) {
-  Touching& of = touching_[flank > 0 ? 0 : 1];
+void HybridIntegrator::contact_changes(std::size_t contact, bool touch) {
+  Touching& of = touching_[contact];
   if (touch == of.now) return;
+  const Mechanics& mechanics = system_.mechanics();
+  const bool wall = mechanics.carried_by_pistons();
   // Teeth of unequal pitch may press on both flanks; with one line of action each a flank that
   // touches has left the other.
-  if (touch && touching(-flank) &&
-      system_.mechanics().approach(time_, state_.motion, -flank) <= kOnTouch)
-    contact_changes(-flank, false);
+  if (touch && !wall && touching_[1 - contact].now &&
+      mechanics.approach(time_, state_.motion, contacts()[1 - contact]) <= kOnTouch)
+    contact_changes(1 - contact, false);
   if (events_.size() >= kMaxEvents)
-    fail("after " + std::to_string(kMaxEvents) + " touches of the teeth");
+    fail("after " + std::to_string(kMaxEvents) + " touches of the " +
+         (wall ? "pistons" : "teeth"));
   close_contact(of);
   of.now = touch;
   ToothEvent event;
   event.time_s = time_;
   event.touch = touch;
-  event.flank = flank;
+  event.flank = wall ? (state_.motion[kLag] < 0 ? -1 : 1) : contacts()[contact];
+  if (wall) event.piston = contacts()[contact];
   event.shaft_speed = shaft(time_, state_).speed;
   event.block_speed = block(time_, state_).speed;
-  event.approach_speed = system_.mechanics().approach_rate(time_, state_.motion, flank);
-  if (touch) {
+  event.approach_speed = mechanics.approach_rate(time_, state_.motion, contacts()[contact]);
+  if (touch && !wall) {
     of.event = events_.size();
     of.impulse = state_.motion[kImpulse];
   }
@@ -204,40 +211,44 @@ double HybridIntegrator::time_at(double block_angle) const {
   return at;
 }
 
-// A flank that touched and left within the step: it is then taken back to the touch, until which
+// A contact that touched and left within the step: it is then taken back to the touch, until which
 // nothing acted between them.
 bool HybridIntegrator::hidden_touch() {
-  const Mechanics& mechanics = system_.mechanics();
-  if (!mechanics.compliant() || touching()) return false;
-  SystemState at;
-  for (const int flank : {1, -1}) {
-    const double first = step_start_;
-    state_at(first, at);
-    if (mechanics.approach(first, at.motion, flank) >= 0 ||
-        mechanics.approach_rate(first, at.motion, flank) <= 0 ||
-        mechanics.approach(time_, state_.motion, flank) >= 0 ||
-        mechanics.approach_rate(time_, state_.motion, flank) >= 0)
-      continue;
-    double nearest = first;
-    numerics::bisect({first, time_}, kHalvings, [&](double t) {
-      nearest = t;
-      state_at(t, at);
-      return !(mechanics.approach_rate(t, at.motion, flank) > 0);
-    });
-    if (mechanics.approach(nearest, at.motion, flank) <= 0) continue;
-    const auto is_in_contact = [&](double t) {
-      state_at(t, at);
-      return mechanics.approach(t, at.motion, flank) > 0;
-    };
-    const double touch = numerics::bisect({first, nearest}, kHalvings, is_in_contact).high;
-    state_at(touch, at);
-    read_integrals(touch, integrals_);
-    state_ = at;
-    time_ = touch;
-    contact_changes(flank, true);
-    return true;
-  }
+  if (touching()) return false;
+  for (std::size_t i = 0; i < contacts().size(); ++i)
+    if (hides_touch(i)) return true;
   return false;
+}
+
+bool HybridIntegrator::hides_touch(std::size_t contact) {
+  const Mechanics& mechanics = system_.mechanics();
+  const int number = contacts()[contact];
+  SystemState at;
+  const double first = step_start_;
+  state_at(first, at);
+  if (mechanics.approach(first, at.motion, number) >= 0 ||
+      mechanics.approach_rate(first, at.motion, number) <= 0 ||
+      mechanics.approach(time_, state_.motion, number) >= 0 ||
+      mechanics.approach_rate(time_, state_.motion, number) >= 0)
+    return false;
+  double nearest = first;
+  numerics::bisect({first, time_}, kHalvings, [&](double t) {
+    nearest = t;
+    state_at(t, at);
+    return !(mechanics.approach_rate(t, at.motion, number) > 0);
+  });
+  if (mechanics.approach(nearest, at.motion, number) <= 0) return false;
+  const auto is_in_contact = [&](double t) {
+    state_at(t, at);
+    return mechanics.approach(t, at.motion, number) > 0;
+  };
+  const double touch = numerics::bisect({first, nearest}, kHalvings, is_in_contact).high;
+  state_at(touch, at);
+  read_integrals(touch, integrals_);
+  state_ = at;
+  time_ = touch;
+  contact_changes(contact, true);
+  return true;
 }
 
 // Where the step should end: a step over an edge would be refused, so it is cut where the edge is
@@ -284,7 +295,9 @@ void HybridIntegrator::advance(double end) {
   keep_going();
   passed_edge_.reset();
   at_knot_ = false;
-  before_ = {touching_, events_.size(), apart_};
+  before_.touching = touching_;
+  before_.events = events_.size();
+  before_.apart = apart_;
   const double stop = horizon(end);
   const double before = time_;
   Reached reached{};
@@ -330,10 +343,10 @@ void HybridIntegrator::advance(double end) {
   if (reached == Reached::event && system_.mechanics().compliant()) {
     const std::vector<int>& passed = integrator_.passed();
     for (const bool touch : {false, true})
-      for (const int flank : {1, -1}) {
-        const int way = passed[flank > 0 ? System::kFlankPlus : System::kFlankMinus];
+      for (std::size_t i = 0; i < contacts().size(); ++i) {
+        const int way = passed[System::kContacts + i];
         if (way == 0 || touch != (way > 0)) continue;
-        contact_changes(flank, touch);
+        contact_changes(i, touch);
         system_.forget();
         restart_ = true;
       }

@@ -2,7 +2,6 @@
 // Internal.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -42,7 +41,7 @@ class HybridIntegrator {
 
   /// Time that is to be simulated in all, s: the steps it would take are foreseen from it.
   void foresee(double duration) { duration_ = duration; }
-  /// Flanks that touch have their impulse until now.
+  /// Flanks that touch have their impulse until now. That of a wall is not told from the others'.
   void close_contacts();
   const std::vector<ToothEvent>& events() const { return events_; }
   /// Of the last step: the edge of a port that the block has passed at time(), rad, and whether a
@@ -51,7 +50,7 @@ class HybridIntegrator {
   bool at_knot() const { return at_knot_; }
   /// They are not kept any longer, nor are steps counted until now: of a motion without an end.
   void forget_events();
-  double time_apart() const { return apart_; }  ///< s, without touch of a flank
+  double time_apart() const { return apart_; }  ///< s, without touch of any contact
   long steps() const { return integrator_.steps(); }
   long evaluations() const { return system_.evaluations(); }
   const System& system() const { return system_; }
@@ -72,20 +71,21 @@ class HybridIntegrator {
 
   // What a step changes beside the states.
   struct Memory {
-    std::array<Touching, 2> touching;
+    std::vector<Touching> touching;
     std::size_t events = 0;
     double apart = 0;
   };
 
   [[noreturn]] void fail(const std::string& why) const;
   void set_interval();
-  void start_teeth();
-  bool touching(int flank) const { return touching_[flank > 0 ? 0 : 1].now; }
-  bool touching() const { return touching(1) || touching(-1); }
-  void contact_changes(int flank, bool touch);
+  void start_contacts();
+  const std::vector<int>& contacts() const { return system_.contacts(); }
+  bool touching() const;
+  void contact_changes(std::size_t contact, bool touch);
   void close_contact(Touching& of);
   void read_integrals(double time, std::vector<double>& integrals) const;  // scaled
   bool hidden_touch();
+  bool hides_touch(std::size_t contact);
   double horizon(double end) const;
   void keep_going();
 
@@ -102,7 +102,7 @@ class HybridIntegrator {
   double time_ = 0, step_start_ = 0, apart_ = 0;
   SystemState state_;  // at time_
   std::vector<double> y_, integrals_;
-  std::array<Touching, 2> touching_;  // flanks +1, -1
+  std::vector<Touching> touching_;  // by contact
   std::vector<ToothEvent> events_;
   Memory before_;  // the last step
   int short_steps_ = 0;

@@ -56,12 +56,17 @@ OpenSystem::OpenSystem(Mechanics& mechanics, Oil& oil, bool shaft_from_outside)
     indicators_.push_back(
         {"edge_behind", "rad", "angle of the block from the last edge of a port"});
   }
-  if (mechanics.compliant()) {
-    indicators_.push_back(
-        {"flank_plus", "m", "approach of the flank that pushes the block forwards"});
-    indicators_.push_back(
-        {"flank_minus", "m", "approach of the flank that pushes the block backwards"});
-  }
+  contacts_ = mechanics.contacts();
+  for (const int contact : contacts_)
+    if (mechanics.carried_by_pistons())
+      indicators_.push_back({"wall_" + std::to_string(contact), "m",
+                             "approach of piston " + std::to_string(contact) + " to its wall"});
+    else if (contact > 0)
+      indicators_.push_back(
+          {"flank_plus", "m", "approach of the flank that pushes the block forwards"});
+    else
+      indicators_.push_back(
+          {"flank_minus", "m", "approach of the flank that pushes the block backwards"});
   knots_ = mechanics.knots();
   const std::vector<double> knots_of_oil = oil.knots();
   knots_.insert(knots_.end(), knots_of_oil.begin(), knots_of_oil.end());
@@ -157,9 +162,8 @@ void OpenSystem::indicator_values(std::vector<double>& values) const {
     values.push_back(edges_->to() + kBeyond - angle);
     values.push_back(angle - (edges_->from() - kBeyond));
   }
-  if (mechanics_.compliant())
-    for (const int flank : {1, -1})
-      values.push_back(mechanics_.approach(time_, state_.motion, flank));
+  for (const int contact : contacts_)
+    values.push_back(mechanics_.approach(time_, state_.motion, contact));
 }
 
 void OpenSystem::pass_event() { edges_->find(block()); }

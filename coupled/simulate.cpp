@@ -24,7 +24,7 @@ class Rows {
         trajectory_(trajectory),
         body_loads_(body_loads) {
     kinetic_ = mechanics.kinetic_energy(0, start.motion);
-    potential_ = mechanics.potential_energy(start.motion);
+    potential_ = mechanics.elastic_energy(0, start.motion);
     work_of_loads_ = start.motion[kWorkOfLoads];
     work_of_drive_ = start.motion[kWorkOfDrive];
     loads_.chamber_pressure.assign(static_cast<std::size_t>(oil.pistons()), 0.0);
@@ -52,7 +52,7 @@ class Rows {
     record.work_of_loads = s.motion[kWorkOfLoads] - work_of_loads_;
     record.work_of_drives = s.motion[kWorkOfDrive] - work_of_drive_;
     record.kinetic_energy_gained = mechanics_.kinetic_energy(time, s.motion) - kinetic_;
-    record.potential_energy_gained = mechanics_.potential_energy(s.motion) - potential_;
+    record.potential_energy_gained = mechanics_.elastic_energy(time, s.motion) - potential_;
     record.work_residual = record.work_of_loads + record.work_of_drives -
                            record.kinetic_energy_gained - record.potential_energy_gained;
     update_max_abs(record.worst_work_residual, record.work_residual);

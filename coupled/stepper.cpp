@@ -84,11 +84,12 @@ class Stepper::Implementation {
 
   void note_events() {
     using Kind = PassedEvent::Kind;
-    if (course_.at_knot()) events_.push_back({Kind::knot, course_.time(), 0, 1});
+    if (course_.at_knot()) events_.push_back({Kind::knot, course_.time()});
     if (const auto angle = course_.passed_edge())
-      events_.push_back({Kind::edge, course_.time(), *angle, 1});
+      events_.push_back({Kind::edge, course_.time(), *angle});
     for (const ToothEvent& event : course_.events())
-      events_.push_back({event.touch ? Kind::touch : Kind::release, event.time_s, 0, event.flank});
+      events_.push_back({event.touch ? Kind::touch : Kind::release, event.time_s, 0, event.flank,
+                         event.piston});
   }
 
   Mechanics& mechanics_;

@@ -28,7 +28,7 @@ bool all_finite(const double* values, std::size_t count) {
 }  // namespace
 
 System::System(Mechanics& mechanics, const Oil& oil, bool balances)
-    : mechanics_(mechanics), oil_(oil), balances_(balances) {
+    : mechanics_(mechanics), oil_(oil), balances_(balances), contacts_(mechanics.contacts()) {
   const MotionVector scales = mechanics.scales();
   if (mechanics.shaft_is_free()) active_.insert(active_.end(), {kTurn, kTurnRate});
   if (mechanics.compliant()) active_.insert(active_.end(), {kLag, kLagRate});
@@ -87,7 +87,7 @@ void System::unscaled(const double* y, SystemState& state) const {
 
 std::vector<int> System::event_functions() const {
   std::vector<int> directions = {1, -1};
-  if (mechanics_.compliant()) directions.insert(directions.end(), {0, 0});
+  directions.resize(kContacts + contacts_.size(), 0);
   return directions;
 }
 
@@ -223,9 +223,8 @@ void System::event_values(double time, const double* y, double* values) {
   set(time, y);
   values[kTo] = block_.angle - to;
   values[kFrom] = block_.angle - from;
-  if (!mechanics_.compliant()) return;
-  values[kFlankPlus] = mechanics_.approach(time, state_.motion, 1);
-  values[kFlankMinus] = mechanics_.approach(time, state_.motion, -1);
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+    values[kContacts + i] = mechanics_.approach(time, state_.motion, contacts_[i]);
 }
 
 bool System::is_recoverable(const std::exception& error) const {

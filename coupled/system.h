@@ -29,8 +29,9 @@ class System : public numerics::Equations {
 
   /// Interval of the block's angle, rad, whose ends are event_functions.
   double from = -1e300, to = 1e300;
-  /// The flanks' touches are event_functions too, where the teeth have them.
-  enum EventFunction : std::size_t { kTo, kFrom, kFlankPlus, kFlankMinus };
+  /// Each contact's touch is an event function too, from kContacts on.
+  enum EventFunction : std::size_t { kTo, kFrom, kContacts };
+  const std::vector<int>& contacts() const { return contacts_; }  ///< of the mechanics
 
   // Integrals, in units of integral_scale().
   int places() const { return places_; }  ///< energies, the first of them
@@ -64,6 +65,7 @@ class System : public numerics::Equations {
   bool balances_;
   int motions_ = 0, places_ = 0;
   std::vector<std::size_t> active_;
+  std::vector<int> contacts_;
   std::vector<double> scale_;
   double work_scale_ = 1, mass_scale_ = 1;
   long evaluations_ = 0;

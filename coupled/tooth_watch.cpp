@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "course.h"
 
@@ -35,8 +36,11 @@ class ToothWatch::Watcher {
     state_.motion[kImpulse] = 0;
     course_.start(0, state_);
     // What touches now began before.
-    touching_ = {};
-    for (const ToothEvent& event : course_.events()) of(event.flank).now = event.touch;
+    touching_.assign(mechanics_.contacts().size(), {});
+    for (const ToothEvent& event : course_.events()) {
+      of(event).now = event.touch;
+      of(event).side = event.flank;
+    }
     seen_ = course_.events().size();
     known_ = 0;
   }
@@ -54,7 +58,7 @@ class ToothWatch::Watcher {
       note_events(s);
       note_force(s);
     }
-    on_flank(s, course_.time());
+    on_side(s, course_.time());
     s.duration = course_.time() - from;
     s.apart = course_.time_apart() - apart;
     s.impulse = state_.motion[kImpulse] - impulse;
@@ -67,37 +71,46 @@ class ToothWatch::Watcher {
  private:
   struct Touching {
     bool now = false;
+    int side = 1;
     bool hit = false;       // by an impact
     std::size_t event = 0;  // of its touch
   };
-  Touching& of(int flank) { return touching_[flank > 0 ? 0 : 1]; }
+  // Flanks +1 and -1, or pistons in their order.
+  Touching& of(const ToothEvent& event) {
+    return touching_[event.piston > 0 ? static_cast<std::size_t>(event.piston) - 1
+                                      : (event.flank > 0 ? 0 : 1)];
+  }
+  bool touches(int side) const {
+    return std::any_of(touching_.begin(), touching_.end(),
+                       [side](const Touching& t) { return t.now && t.side == side; });
+  }
 
-  void on_flank(ToothStretch& s, double until) {
-    if (of(1).now) s.plus += until - since_;
-    if (of(-1).now) s.minus += until - since_;
+  void on_side(ToothStretch& s, double until) {
+    if (touches(1)) s.plus += until - since_;
+    if (touches(-1)) s.minus += until - since_;
     since_ = until;
   }
 
   void note_events(ToothStretch& s) {
     for (; seen_ < course_.events().size(); ++seen_) {
       const ToothEvent& event = course_.events()[seen_];
-      on_flank(s, event.time_s);
+      on_side(s, event.time_s);
       known_ = 0;
-      Touching& flank = of(event.flank);
+      Touching& contact = of(event);
       if (event.touch) {
-        flank = {true, event.approach_speed >= impact_speed_, seen_};
-        s.impacts += flank.hit ? 1 : 0;
+        contact = {true, event.flank, event.approach_speed >= impact_speed_, seen_};
+        s.impacts += contact.hit ? 1 : 0;
       } else {
         ++s.separations;
-        if (flank.hit)
-          s.largest_hit = std::max(s.largest_hit, course_.events()[flank.event].impulse);
-        flank = {};
+        if (contact.hit)
+          s.largest_hit = std::max(s.largest_hit, course_.events()[contact.event].impulse);
+        contact = {};
       }
     }
   }
 
   void note_force(ToothStretch& s) {
-    if (!of(1).now && !of(-1).now) return;
+    if (!touches(1) && !touches(-1)) return;
     const double time = course_.time();
     oil_.loads(time, mechanics_.block(time, state_.motion), state_.oil.data(), loads_);
     MotionVector rates{};
@@ -129,7 +142,7 @@ class ToothWatch::Watcher {
   SystemState state_;
   OilLoads loads_;
   std::size_t seen_ = 0;                // events
-  std::array<Touching, 2> touching_{};  // flanks +1, -1
+  std::vector<Touching> touching_;      // by contact
   double since_ = 0;
   std::array<double, 3> times_{}, forces_{};  // of the contact's last steps
   int known_ = 0;

@@ -118,6 +118,12 @@ struct AsSimulated {
 };
 std::ostream& operator<<(std::ostream& to, const AsSimulated& what) { return to << what.name; }
 
+Case touching_pistons() {
+  Case c = shipped("bap63_tapered_pistons", 0.01, 20);
+  c.pump.block.axial_inertia = 2.5e-3;
+  return c;
+}
+
 class PlantAsSimulated : public testing::TestWithParam<AsSimulated> {};
 
 // Written before the first run: 1e-8 of peak, every output, however many steps.
@@ -162,17 +168,23 @@ INSTANTIATE_TEST_SUITE_P(
                       c.drive->torque = 150;
                       c.pump.shaft.axial_inertia = c.pump.block.axial_inertia = 2e-3;
                       return c;
+                    }},
+        AsSimulated{"pistons_that_touch", Drive::speed, [] { return touching_pistons(); }},
+        AsSimulated{"pistons_with_oil", Drive::speed,
+                    [] {
+                      Case c = touching_pistons();
+                      const Case oil = rated();
+                      c.pressure = oil.pressure;
+                      c.hydraulics = oil.hydraulics;
+                      return c;
+                    }},
+        AsSimulated{"universal_joint_with_oil", Drive::speed,
+                    [] {
+                      Case c = rated();
+                      c.pump.transfer.kind = TransferKind::cardan;
+                      return c;
                     }}),
     [](const auto& parameter) { return parameter.param.name; });
-
-TEST(Plant, PistonsThatTouchAreRefused) {
-  EXPECT_EQ(
-      refusal([] {
-        Plant(shipped("bap63_tapered_pistons", 0.01, 20), driven_by(Drive::speed), kSteps);
-      }),
-      "[transfer] kind = \"pistons\": must be of another kind where oil or another program is "
-      "integrated with the motion: the touches of the pistons are not followed there yet");
-}
 
 // Where the end is not known beforehand steps are others, by what is left of errors: of impacts,
 // which magnify them, more.

@@ -19,6 +19,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/comparison.h"
 #include "bentaxis/study/comparison_document.h"
+#include "bentaxis/study/pump_picture.h"
 #include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/simulation.h"
 #include "bentaxis/study/simulation_document.h"
@@ -161,6 +162,9 @@ void expect_theory(const Reader& scene, const Case& the_case,
                    const std::vector<const ResultTable*>& tables, std::size_t row) {
   const PumpParameters& p = the_case.pump;
   const double theta = radians(tables[0]->theta_deg[row]);
+  // A universal joint and pistons let the block stand apart from the shaft.
+  const std::size_t own = tables[0]->find("psi_deg");
+  const double psi = own < tables[0]->columns() ? radians(tables[0]->at(row, own)) : theta;
   const double size = p.geometry.piston_length;
   const auto near = [&](const Vector3d& found, const Vector3d& wanted, double scale,
                         const std::string& what) {
@@ -178,7 +182,7 @@ void expect_theory(const Reader& scene, const Case& the_case,
     };
     for (int k = 1; k <= p.geometry.pistons; ++k) {
       const std::string n = std::to_string(k);
-      const Theory points(p.geometry, theta, theta, k);
+      const Theory points(p.geometry, theta, psi, k);
       const auto [origin, axes] = scene.stand("piston " + n, row);
       near(origin, points.a, size, "A" + n);
       near(axes.col(2), (points.b - points.a).normalized(), 1, "axis of piston " + n);
@@ -196,7 +200,7 @@ void expect_theory(const Reader& scene, const Case& the_case,
       near(force("Rc_" + n), rc, table.peak("Rc"), "Rc");
       near(force("Rc_" + n + ".block"), -rc, table.peak("Rc"), "Rc on the block");
     }
-    const Theory points(p.geometry, theta, theta, 1);
+    const Theory points(p.geometry, theta, psi, 1);
     const auto in_s2 = [&](double x, double y, double z) -> Vector3d {
       return points.turn * Vector3d(x, y, z);
     };
@@ -210,7 +214,21 @@ void expect_theory(const Reader& scene, const Case& the_case,
     near(at("Rb2"), {0, 0, p.bearings.cylindrical_z}, size, "C2");
     near(scene.sum(Reader::of(scene.load("Td")["moment"], model), row, model),
          {0, 0, value("Td_z1_Nm")}, table.peak("Td"), "Td");
-    if (p.gear.contact == ToothContact::rigid && p.gear.flanks == Flanks::one &&
+    if (p.transfer.is_joint())
+      near(scene.sum(Reader::of(scene.load("Tcs")["moment"], model), row, model),
+           in_s2(value("Tcs_x2_Nm"), value("Tcs_y2_Nm"), value("Tcs_z2_Nm")), table.peak("Tcs"),
+           "Tcs");
+    if (p.transfer.kind == TransferKind::pistons)
+      for (int k = 1; k <= p.geometry.pistons; ++k) {
+        const std::string n = std::to_string(k);
+        const Theory of(p.geometry, theta, psi, k);
+        near(force("Rw_" + n), in_s2(value("Rw_" + n + "_x2_N"), value("Rw_" + n + "_y2_N"), 0),
+             table.peak("Rw"), "Rw");
+        near(at("Rw_" + n),
+             of.a + p.transfer.wall->from_joint / size * (of.b - of.a), size, "D" + n);
+      }
+    if (p.transfer.kind == TransferKind::gear && p.gear.contact == ToothContact::rigid &&
+        p.gear.flanks == Flanks::one &&
         the_case.analytic.gear == BlockDrive::mesh && table.peak("Rcs") > 0) {
       const double half = p.geometry.tilt / 2, sign = the_case.operation.speed_rpm < 0 ? -1 : 1;
       const double across = std::sin(p.gear.pressure_angle);
@@ -292,7 +310,9 @@ void expect_scene_of(Case the_case) {
 }
 
 TEST(PumpScene, StandsAndActsAsInTheTables) {
-  for (const char* name : {"bap63_rated", "bap63_as_compared_in_the_paper", "bap63_teeth"})
+  for (const char* name :
+       {"bap63_rated", "bap63_as_compared_in_the_paper", "bap63_teeth", "bap63_constant_velocity",
+        "bap63_cardan", "bap63_tapered_pistons"})
     expect_scene_of(shipped_case(name));
   for (const std::string& name : reference_cases()) expect_scene_of(reference_case(name));
 }
@@ -518,6 +538,61 @@ TEST(PumpScene, SeatsBoresAndPortsAreWhereTheCaseSays) {
     EXPECT_NEAR(most, arcs[port][1], 1e-9);
     EXPECT_NEAR(inner, 0.019, 1e-12);
     EXPECT_NEAR(outer, 0.0242, 1e-12);
+  }
+}
+
+// What turns the block is drawn, and nothing else: no gear of a pump that has none.
+TEST(PumpScene, ShowsTheTransferOfThePump) {
+  const std::pair<const char*, const char*> kWords[] = {
+      {"bap63_rated", "gears are their pitch cones"},
+      {"bap63_constant_velocity", "the constant-velocity joint is drawn"},
+      {"bap63_cardan", "the arms of both forks"},
+      {"bap63_tapered_pistons", "the sphere that touches the wall"}};
+  for (const auto& [name, words] : kWords) {
+    SCOPED_TRACE(name);
+    const Case the_case = shipped_case(name);
+    const bool gear = std::string(name) == "bap63_rated";
+    const auto scene = alone(the_case);
+    ASSERT_TRUE(scene);
+    EXPECT_NE(scene->note.find(words), std::string::npos) << scene->note;
+    EXPECT_EQ(scene->note.find("gear") != std::string::npos, gear);
+    const bool has_s4 =
+        std::any_of(scene->frames.begin(), scene->frames.end(),
+                    [](const auto& frame) { return frame.first == "S4"; });
+    EXPECT_EQ(has_s4, gear);
+    const std::string picture = study::pump_picture(the_case);
+    EXPECT_EQ(picture.find("pitch circle") != std::string::npos, gear);
+    EXPECT_EQ(picture.find("O4") != std::string::npos, gear);
+    EXPECT_EQ(picture.find(">D<") != std::string::npos,
+              std::string(name) == "bap63_tapered_pistons");
+    EXPECT_EQ(picture.find("joint at O2") != std::string::npos,
+              the_case.pump.transfer.is_joint());
+  }
+}
+
+// Both arms of a universal joint stay at right angles all round.
+TEST(PumpScene, ArmsOfAUniversalJointStayAtRightAngles) {
+  Case the_case = shipped_case("bap63_cardan");
+  the_case.pump.transfer.cardan->phase = radians(25);
+  the_case.operation.samples_per_revolution = 36;
+  study::ComparisonOptions options;
+  options.loads = true;
+  const study::ComparisonResult r = study::compare_models(the_case, {}, options);
+  const report::Document document = study::comparison_document(r, {}, study::describe(r));
+  ASSERT_TRUE(document.scene);
+  const Reader scene(*document.scene, {&r.analytic, &r.multibody}, r.analytic.theta_deg);
+  std::map<std::string, Vector3d> arms;
+  for (const Json& body : scene.json["bodies"])
+    for (const Json& shape : body["shapes"])
+      if (shape.contains("wire") && shape["look"] == "gear") {
+        const Json& p = shape["wire"]["points"];
+        arms[body["name"]] = vector({p[3], p[4], p[5]}) - vector({p[0], p[1], p[2]});
+      }
+  ASSERT_EQ(arms.size(), 2U);
+  for (std::size_t row = 0; row < r.analytic.rows(); ++row) {
+    const Vector3d shaft = scene.stand("shaft", row).second * arms["shaft"].normalized();
+    const Vector3d block = scene.stand("block", row).second * arms["block"].normalized();
+    EXPECT_NEAR(shaft.dot(block), 0, 1e-6) << row;
   }
 }
 

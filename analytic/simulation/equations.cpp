@@ -92,6 +92,8 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
   const Response still = respond(model, 0, 0);
   shaft_inertia_ = std::abs(respond(model, 1e5, 1e5).drive_torque - still.drive_torque) / 1e5;
   block_inertia_ = std::abs(respond(model, 0, 1e5).tooth_force - still.tooth_force) * arm_ / 1e5;
+  // What turns the block is then a torque of its own, not one of the shaft.
+  if (walls_) shaft_inertia_ += block_inertia_;
   // Rounding leaves this much of nothing.
   constexpr double kMinInertia = 1e-14;
   if (drive_.kind != DriveKind::speed && !(shaft_inertia_ > kMinInertia))
@@ -143,12 +145,19 @@ double Equations::block_speed(double time, const State& y) const {
   return block(shaft(time, y), y).speed;
 }
 
-const std::vector<WallPath>& Equations::wall_paths(double time, const State& y) {
-  const AxisMotion shaft_was = instant_.shaft, block_was = instant_.block;
-  set_speeds(time, y);
-  instant_.shaft.acceleration = shaft_was.acceleration;
-  instant_.block.acceleration = block_was.acceleration;
-  walls_->find(instant_, paths_);
+const std::vector<WallPath>& Equations::wall_paths(double time, const State& y) const {
+  AxisMotion shaft_there = shaft(time, y);
+  AxisMotion block_there = block(shaft_there, y);
+  shaft_there.acceleration = instant_.shaft.acceleration;
+  block_there.acceleration = instant_.block.acceleration;
+  const ToothLag lag{y[kLag], y[kLagRate]};
+  if (!paths_.empty() && at_walls_.shaft == shaft_there && at_walls_.block == block_there &&
+      at_walls_.lag->angle == lag.angle && at_walls_.lag->rate == lag.rate)
+    return paths_;
+  at_walls_.shaft = shaft_there;
+  at_walls_.block = block_there;
+  at_walls_.lag = lag;
+  walls_->find(at_walls_, paths_);
   return paths_;
 }
 
@@ -201,7 +210,7 @@ State Equations::scales() const {
         scale[kTwist] * std::sqrt(stiffness * (1 / motor.rotor_inertia + 1 / shaft_inertia_));
   }
   scale[kWorkOfLoads] = scale[kWorkOfDrive] = torque_scale_;
-  scale[kImpulse] = tooth_scale_ * 1e-3;
+  scale[kImpulse] = (walls_ ? tooth_scale_ / walls_->arm() : tooth_scale_) * 1e-3;
   for (double& size : scale) size = std::exp2(std::round(std::log2(size)));  // exact to divide by
   return scale;
 }
@@ -355,12 +364,13 @@ Motion Equations::accelerate(double time, const State& y) {
 
 void Equations::rates(double time, const State& y, State& dy) {
   const Motion m = motion(time, y);
-  add_rates(y, m, dy);
+  add_rates(time, y, m, dy);
 }
 
 void Equations::rates_under_loads(double time, const State& y, State& dy) {
   const Motion m = motion_under_loads(time, y);
-  add_rates(y, m, dy);
+  add_rates(time, y, m, dy);
+  if (walls_) dy[kImpulse] = wall_force_;
 }
 
 double Equations::pressure_power(double time, const State& y) {
@@ -368,7 +378,7 @@ double Equations::pressure_power(double time, const State& y) {
   return loads_.pressure_power(instant_);
 }
 
-void Equations::add_rates(const State& y, const Motion& m, State& dy) {
+void Equations::add_rates(double time, const State& y, const Motion& m, State& dy) {
   dy.fill(0);
   const double shaft_speed = m.shaft.speed;
   double loads = loads_.power(instant_, m.drive_torque);
@@ -390,15 +400,18 @@ void Equations::add_rates(const State& y, const Motion& m, State& dy) {
   if (bevel_) loads += m.shaft_moment * shaft_speed + m.tooth_force * arm_ * m.block.speed;
   if (walls_) {
     // What the walls take in beyond what their springs hold.
-    walls_->find(instant_, paths_);
-    for (std::size_t k = 0; k < paths_.size(); ++k) {
-      const auto [distance, rate, rate_dot] = paths_[k];
+    const std::vector<WallPath>& paths = wall_paths(time, y);
+    wall_force_ = 0;
+    for (std::size_t k = 0; k < paths.size(); ++k) {
+      const auto [distance, rate, rate_dot] = paths[k];
       if (!(distance > 0)) continue;
       const double spring = walls_->spring(distance);
       const bool pushes =
           wall_modes[k] == closed_form::WallMode::pressing ||
           (wall_modes[k] == closed_form::WallMode::by_law && 1 + walls_->dissipation() * rate > 0);
-      loads -= ((pushes ? spring * (1 + walls_->dissipation() * rate) : 0.0) - spring) * rate;
+      const double force = pushes ? spring * (1 + walls_->dissipation() * rate) : 0.0;
+      wall_force_ += force;
+      loads -= (force - spring) * rate;
     }
   }
   if (law_) {
@@ -465,7 +478,7 @@ double Equations::kinetic_energy(double time, const State& y) {
   return energy;
 }
 
-double Equations::wall_energy(double time, const State& y) {
+double Equations::wall_energy(double time, const State& y) const {
   double energy = 0;
   if (walls_)
     for (const WallPath& path : wall_paths(time, y))

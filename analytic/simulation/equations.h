@@ -72,7 +72,7 @@ class Equations {
   BevelTeeth::Approach approach_of_teeth(double time, const State& y, int flank) const;
   const std::optional<BevelTeeth>& bevel() const { return bevel_; }
   /// Of the walls, with the accelerations of the motion that was found last.
-  const std::vector<WallPath>& wall_paths(double time, const State& y);
+  const std::vector<WallPath>& wall_paths(double time, const State& y) const;
   AxisMotion block(const AxisMotion& shaft, const State& y) const;
   double block_angle(double time, const State& y) const;
   double block_speed(double time, const State& y) const;
@@ -102,7 +102,7 @@ class Equations {
   /// Of all bodies and of the rotor, J; of the teeth and the coupling, J.
   double kinetic_energy(double time, const State& y);
   double potential_energy(const State& y) const;
-  double wall_energy(double time, const State& y);  ///< of the walls, J
+  double wall_energy(double time, const State& y) const;  ///< of the walls, J
 
  private:
   struct Response {
@@ -110,7 +110,7 @@ class Equations {
   };
   Response respond(const Model& model, double shaft_acceleration, double block_acceleration);
   Motion accelerate(double time, const State& y);
-  void add_rates(const State& y, const Motion& m, State& dy);
+  void add_rates(double time, const State& y, const Motion& m, State& dy);
   Teeth teeth_at(const State& y) const;
   void set_speeds(double time, const State& y);
   void set_pressures(double block_angle);
@@ -139,7 +139,9 @@ class Equations {
   bool ring_off_;  // rings act off B, and do work on the play of their pistons
   std::optional<closed_form::ToothLaw> law_;
   std::optional<Walls> walls_;
-  std::vector<WallPath> paths_;
+  mutable std::vector<WallPath> paths_;
+  mutable Instant at_walls_;  // what paths_ are of
+  double wall_force_ = 0;     // N, of all walls, of the rates found last
   double arm_;  // of a tooth force; 1 where pistons carry the block, whose torque is asked for
   std::optional<TimeSignal> curve_;
   Surroundings outside_;

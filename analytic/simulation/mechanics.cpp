@@ -1,6 +1,5 @@
 #include "bentaxis/analytic/mechanics.h"
 
-#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/trajectory.h"
 #include "simulation/equations.h"
@@ -25,10 +24,6 @@ class ClosedForm : public Mechanics {
   ClosedForm(const Case& the_case, const Assumptions& assumptions)
       : pressure_(port_pressures(the_case)), equations_(the_case, assumptions, pressure_) {
     require_smooth_friction(the_case);
-    if (the_case.pump.transfer.kind == TransferKind::pistons)
-      throw InputError(
-          "[transfer] kind = \"pistons\": must be of another kind where oil or another program is "
-          "integrated with the motion: the touches of the pistons are not followed there yet");
   }
 
   const ChannelLayout& layout() const override { return equations_.model().layout(); }
@@ -46,13 +41,16 @@ class ClosedForm : public Mechanics {
   AxisMotion block(double time, const MotionVector& y) const override {
     return equations_.block(equations_.shaft(time, y), y);
   }
-  double approach(double time, const MotionVector& y, int flank) const override {
-    return equations_.bevel() ? equations_.approach_of_teeth(time, y, flank).distance
-                              : equations_.approach(y, flank);
+  bool carried_by_pistons() const override { return equations_.walls().has_value(); }
+  double approach(double time, const MotionVector& y, int contact) const override {
+    if (equations_.walls()) return wall(time, y, contact).distance;
+    return equations_.bevel() ? equations_.approach_of_teeth(time, y, contact).distance
+                              : equations_.approach(y, contact);
   }
-  double approach_rate(double time, const MotionVector& y, int flank) const override {
-    return equations_.bevel() ? equations_.approach_of_teeth(time, y, flank).rate
-                              : equations_.approach_rate(y, flank);
+  double approach_rate(double time, const MotionVector& y, int contact) const override {
+    if (equations_.walls()) return wall(time, y, contact).rate;
+    return equations_.bevel() ? equations_.approach_of_teeth(time, y, contact).rate
+                              : equations_.approach_rate(y, contact);
   }
   bool teeth(double time, const MotionVector& y, TeethAction& action) override {
     if (!equations_.bevel()) return false;
@@ -87,8 +85,15 @@ class ClosedForm : public Mechanics {
   double potential_energy(const MotionVector& y) const override {
     return equations_.potential_energy(y);
   }
+  double elastic_energy(double time, const MotionVector& y) const override {
+    return equations_.potential_energy(y) + equations_.wall_energy(time, y);
+  }
 
  private:
+  const simulation::WallPath& wall(double time, const MotionVector& y, int piston) const {
+    return equations_.wall_paths(time, y)[static_cast<std::size_t>(piston) - 1];
+  }
+
   PressureTrace pressure_;
   Equations equations_;
 };

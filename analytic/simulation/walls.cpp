@@ -29,10 +29,9 @@ void Walls::find(const Instant& instant, std::vector<WallPath>& paths) const {
 
 double Walls::torsional_stiffness(double torque) const {
   const closed_form::Pump<double>& p = pump_.numbers;
-  const double arm = p.wall.share * p.piston.bore_radius;
-  const double force = torque / arm;
+  const double force = torque / arm();
   const double distance = kWallApproach * std::pow(force / p.wall.stiffness, 1 / p.wall.exponent);
-  return p.wall.exponent * force / distance * arm * arm;
+  return p.wall.exponent * force / distance * arm() * arm();
 }
 
 }  // namespace bentaxis::analytic::simulation

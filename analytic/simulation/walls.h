@@ -28,6 +28,8 @@ class Walls {
   }
   double exponent() const { return pump_.numbers.wall.exponent; }
   double dissipation() const { return pump_.numbers.wall.dissipation; }
+  /// Torque about z2 of a wall, over its force, m.
+  double arm() const { return pump_.numbers.wall.share * pump_.numbers.piston.bore_radius; }
   /// Torque about z2 per angle, Nm/rad, of one wall where it carries a torque, Nm.
   double torsional_stiffness(double torque) const;
 

@@ -42,7 +42,7 @@ int rattle(const Options& options) {
   rattle.speed_rpm = values_in("--speeds", options.speeds, "rpm", kMinSpeed);
   rattle.delivery_bar = values_in("--delivery-bar", options.delivery, "bar", 0);
   const Case the_case = options.the_case.read();
-  if (rattle.check > 0 && the_case.pump.gear.contact == ToothContact::rigid)
+  if (rattle.check > 0 && !the_case.pump.block_moves_freely())
     throw InputError(
         "--check-points: has no effect: with [gear] contact = \"rigid\" no motion is integrated");
   study::RattleFile file(std::filesystem::path(options.place.out) / "rattle.partial.csv",
@@ -99,7 +99,7 @@ int rattle(const Options& options) {
 Command add_rattle_command(CommandParser program) {
   auto options = std::make_shared<Options>();
   CommandParser command = program.subcommand(
-      "rattle", "Map of gear contact: loaded, reversing, out of contact, impacts on both flanks");
+      "rattle", "Map of gear or piston contact: loaded, reversing, out of contact, impacts on both sides");
   add_case(command, options->the_case);
   add_report(command, options->place, "report.html, report.json and rattle.csv");
   add_values(command, "--speeds", options->speeds, "shaft speeds, rpm").required();

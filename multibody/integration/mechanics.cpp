@@ -50,7 +50,7 @@ class MultibodyMechanics : public Mechanics {
         load_reader_(system_),
         layout_(pump_),
         joint_(pump_.transfer.is_joint() ? std::make_unique<JointMotion>(pump_) : nullptr),
-        arm_(joint_ ? pump_.geometry.joint_circle_radius : system_.gear().arm()) {
+        arm_(arm_of(system_)) {
     system_.inputs().chamber_pressure = [this](double, double, std::vector<double>& p) {
       p = loads_.chamber_pressure;
     };
@@ -70,7 +70,8 @@ class MultibodyMechanics : public Mechanics {
   }
   MotionVector scales() const override { return scales_; }
   bool shaft_is_free() const override { return !drive_.gives_speed(); }
-  bool compliant() const override { return system_.teeth() != nullptr || has_bevel(); }
+  bool compliant() const override { return has_law() || has_bevel() || walls() != nullptr; }
+  bool carried_by_pistons() const override { return walls() != nullptr; }
   bool has_motor() const override { return drive_.is_motor(); }
   std::vector<double> knots() const override { return drive_.knots(); }
 
@@ -90,13 +91,15 @@ class MultibodyMechanics : public Mechanics {
     }
     return {motion.angle - y[kLag], motion.speed - y[kLagRate], 0};
   }
-  double approach(double time, const MotionVector& y, int flank) const override {
-    if (has_bevel()) return closing(time, y, flank).approach;
-    return flank * arm_ * y[kLag] - law().backlash / 2;
+  double approach(double time, const MotionVector& y, int contact) const override {
+    if (walls() != nullptr) return wall_touch(time, y, contact).approach;
+    if (has_bevel()) return closing(time, y, contact).approach;
+    return contact * arm_ * y[kLag] - law().backlash / 2;
   }
-  double approach_rate(double time, const MotionVector& y, int flank) const override {
-    if (has_bevel()) return closing(time, y, flank).rate;
-    return flank * arm_ * y[kLagRate];
+  double approach_rate(double time, const MotionVector& y, int contact) const override {
+    if (walls() != nullptr) return wall_touch(time, y, contact).rate;
+    if (has_bevel()) return closing(time, y, contact).rate;
+    return contact * arm_ * y[kLagRate];
   }
   bool teeth(double time, const MotionVector& y, TeethAction& action) override {
     if (has_bevel())
@@ -148,10 +151,33 @@ class MultibodyMechanics : public Mechanics {
     if (has_motor()) energy += motor().coupling_stiffness * y[kTwist] * y[kTwist] / 2;
     return energy;
   }
+  double elastic_energy(double time, const MotionVector& y) const override {
+    double energy = potential_energy(y);
+    if (walls() != nullptr)
+      translate_simbody_errors([&] {
+        place(posture(time, y));
+        energy += walls()->elastic_energy(system_.dynamics());
+      });
+    return energy;
+  }
 
  private:
   const ToothCompliance& law() const { return *pump_.gear.compliance; }
   bool has_law() const { return system_.teeth() != nullptr; }
+  const BoreWalls* walls() const { return system_.walls(); }
+  WallTouch wall_touch(double time, const MotionVector& y, int piston) const {
+    WallTouch touch;
+    translate_simbody_errors([&] {
+      place(posture(time, y));
+      touch = walls()->touch(system_.dynamics(), static_cast<std::size_t>(piston) - 1);
+    });
+    return touch;
+  }
+  // About the block's axis: 1 where pistons carry it, whose torque is asked for.
+  static double arm_of(const PumpSystem& system) {
+    if (system.joint() != nullptr || system.walls() != nullptr) return 1;
+    return system.gear().arm();
+  }
   const BevelTeeth& bevel() const { return system_.bevel()->teeth(); }
   bool has_bevel() const { return system_.bevel() != nullptr; }
   BevelTeeth::Closing closing(double time, const MotionVector& y, int flank) const {
@@ -176,7 +202,7 @@ class MultibodyMechanics : public Mechanics {
   }
 
   void require_pressures(const OilLoads& loads) const;
-  void place(const Posture& now);
+  void place(const Posture& now) const;
   void load(const OilLoads& loads);
   void accelerate(const Posture& now, const OilLoads& loads);
   void find_rates(const Posture& now, const MotionVector& y, const OilLoads& loads,
@@ -191,8 +217,8 @@ class MultibodyMechanics : public Mechanics {
 
   const PumpParameters& pump_;
   CaseDrive drive_;
-  PumpSystem system_;
-  Placement placement_;
+  mutable PumpSystem system_;  // its state is where place() was asked for last
+  mutable Placement placement_;
   FreeMotion free_motion_;
   BodyLoadReader load_reader_;
   ChannelLayout layout_;
@@ -200,7 +226,7 @@ class MultibodyMechanics : public Mechanics {
   double arm_;                          // m, of the teeth's line of action about the block's axis
   OilLoads loads_;
   FreeMotion::Accelerations found_;
-  std::optional<Posture> placed_;
+  mutable std::optional<Posture> placed_;
   MotionVector scales_{};
 };
 
@@ -211,7 +237,7 @@ void MultibodyMechanics::require_pressures(const OilLoads& loads) const {
 }
 
 // Leaves the dynamics state realized to Velocity, with forces to be found anew.
-void MultibodyMechanics::place(const Posture& now) {
+void MultibodyMechanics::place(const Posture& now) const {
   State& state = system_.dynamics();
   if (!placed_ || !placed_->moves_as(now)) {
     placed_.reset();
@@ -259,8 +285,11 @@ void MultibodyMechanics::find_rates(const Posture& now, const MotionVector& y,
   if (compliant()) {
     dy[kLag] = y[kLagRate];
     dy[kLagRate] = found_.shaft - found_.block;
-    dy[kImpulse] = std::abs(has_bevel() ? system_.bevel_torque_on_block(state) / arm_
-                                        : system_.teeth()->force(state));
+    if (walls() != nullptr)
+      dy[kImpulse] = walls()->total_force(state);
+    else
+      dy[kImpulse] = std::abs(has_bevel() ? system_.bevel_torque_on_block(state) / arm_
+                                          : system_.teeth()->force(state));
   }
   if (has_motor()) {
     dy[kTwist] = y[kTwistRate];
@@ -284,6 +313,7 @@ void MultibodyMechanics::add_work_rates(const Posture& now, const MotionVector& 
   if (has_law())
     for (const int flank : {1, -1})
       elastic += flank_force(law(), approach(0, y, flank), 0) * approach_rate(0, y, flank);
+  if (walls() != nullptr) elastic += walls()->elastic_power(state);
   if (has_motor()) elastic += motor().coupling_stiffness * y[kTwist] * y[kTwistRate];
   dy[kWorkOfLoads] = total - drive + elastic;
   dy[kWorkOfDrive] = drive;
@@ -347,7 +377,7 @@ MotionVector MultibodyMechanics::find_scales(const Case& the_case) {
 
   double torque = kMinTorque;
   double tooth = 0;  // N, that keeps the block with the shaft
-  system_.teeth_setting().apart = true;
+  system_.teeth_setting().apart = system_.wall_setting().apart = true;
   double both = 0;               // kg m2
   double lag = SimTK::Infinity;  // kg m2, inertia that the teeth work against
   for (int i = 0; i < kAngles; ++i) {
@@ -396,7 +426,7 @@ MotionVector MultibodyMechanics::find_scales(const Case& the_case) {
     for (const double value : spec.curve.value) torque = std::max(torque, std::abs(value));
   }
   placed_.reset();
-  system_.teeth_setting().apart = false;
+  system_.teeth_setting().apart = system_.wall_setting().apart = false;
 
   MotionVector scale;
   scale.fill(1);
@@ -409,7 +439,9 @@ MotionVector MultibodyMechanics::find_scales(const Case& the_case) {
     // Teeth that meet carry a good part of what the drive gives.
     tooth = std::max(tooth, kTouchShare * torque / arm_);
     double stiffness = 0;  // Nm/rad
-    if (has_bevel()) {
+    if (walls() != nullptr) {
+      stiffness = walls()->torsional_stiffness(tooth * arm_);
+    } else if (has_bevel()) {
       stiffness = tooth * arm_ / (bevel().rest(0, tooth * arm_).angle - bevel().rest(0, 0).angle);
     } else {
       const double approach =
@@ -419,6 +451,7 @@ MotionVector MultibodyMechanics::find_scales(const Case& the_case) {
     scale[kLag] = std::min(kAngle, tooth * arm_ / stiffness);
     scale[kLagRate] = scale[kLag] * std::sqrt(stiffness / lag);
     scale[kImpulse] = tooth * kOneTouch;
+    if (walls() != nullptr) scale[kImpulse] /= pump_.geometry.bore_circle_radius;
   }
   if (has_motor()) {
     const double stiffness = motor().coupling_stiffness;
@@ -434,11 +467,6 @@ MotionVector MultibodyMechanics::find_scales(const Case& the_case) {
 
 std::unique_ptr<Mechanics> mechanics(const Case& the_case, const Assumptions& assumptions) {
   require_simulable(the_case, assumptions);
-  if (the_case.pump.transfer.kind == TransferKind::pistons)
-    throw InputError(
-        (the_case.file.empty() ? "" : the_case.file.string() + ": ") +
-        "[transfer] kind = \"pistons\": the multibody model has no equations of motion "
-        "for oil or a motor of others beside them; simulate with a given pressure");
   require_smooth_friction(the_case);
   std::unique_ptr<Mechanics> mechanics;
   translate_simbody_errors(

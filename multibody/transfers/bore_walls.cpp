@@ -51,6 +51,8 @@ BoreWalls::BoreWalls(SimTK::GeneralForceSubsystem& forces, const PumpParameters&
     : law_(*pump.transfer.wall),
       bore_radius_(pump.geometry.bore_diameter / 2),
       sphere_radius_(bore_radius_ - law_.clearance),
+      arm_(pump.geometry.bore_circle_radius *
+           (1 - law_.from_joint / pump.geometry.piston_length)),
       block_(bodies.block),
       pistons_(bodies.pistons),
       bore_points_(pistons.bore_points),
@@ -100,6 +102,28 @@ double BoreWalls::elastic_energy(const State& state) const {
     energy += elastic_force(law_, pressed) * pressed / (law_.exponent + 1);
   }
   return energy;
+}
+
+double BoreWalls::elastic_power(const State& state) const {
+  double power = 0;
+  for (std::size_t k = 0; k < size(); ++k) {
+    const WallTouch found = touch(state, k);
+    power += elastic_force(law_, std::max(0.0, found.approach)) * found.rate;
+  }
+  return power;
+}
+
+double BoreWalls::total_force(const State& state) const {
+  double total = 0;
+  for (std::size_t k = 0; k < size(); ++k) total += touch(state, k).force;
+  return total;
+}
+
+double BoreWalls::torsional_stiffness(double torque) const {
+  const double force = torque / arm_;
+  const double pressed =
+      kWallApproach * std::pow(force / (law_.stiffness * kWallApproach), 1 / law_.exponent);
+  return law_.exponent * force / pressed * arm_ * arm_;
 }
 
 }  // namespace bentaxis::multibody

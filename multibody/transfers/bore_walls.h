@@ -51,8 +51,13 @@ class BoreWalls {
   SimTK::Vec3 force_on_piston(const SimTK::State& state, std::size_t piston) const;
   /// The branch that holds at a state.
   WallBranch branch_at(const SimTK::State& state, std::size_t piston) const;
-  /// Energy that their springs hold, J.
+  /// Energy that their springs hold, J, and its rate, W.
   double elastic_energy(const SimTK::State& state) const;
+  double elastic_power(const SimTK::State& state) const;
+  /// Sum of the forces of all walls, N.
+  double total_force(const SimTK::State& state) const;
+  /// Torque about the block's axis per angle, Nm/rad, of one wall that carries a torque, Nm.
+  double torsional_stiffness(double torque) const;
   /// The element, for what it applies.
   const SimTK::Force& force() const { return force_; }
   const WallContact& law() const { return law_; }
@@ -63,6 +68,7 @@ class BoreWalls {
 
   WallContact law_;
   double bore_radius_, sphere_radius_;
+  double arm_;  // m, of a wall's force about the block's axis, per force
   SimTK::MobilizedBody block_;
   std::vector<SimTK::MobilizedBody> pistons_;
   std::vector<SimTK::Vec3> bore_points_;

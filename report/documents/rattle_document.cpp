@@ -27,7 +27,20 @@ std::array<long, 4> counts_of(const RattleMap& map, Sweep sweep) {
   return counts;
 }
 
-bool rigid(const RattleMap& map) { return !map.the_case.pump.gear.is_compliant(); }
+bool rigid(const RattleMap& map) { return !map.the_case.pump.block_moves_freely(); }
+bool by_pistons(const RattleMap& map) {
+  return map.the_case.pump.transfer.kind == TransferKind::pistons;
+}
+// What carries the block, in words.
+struct Words {
+  const char *contacts, *contact, *force, *criterion;
+};
+const Words& words(const RattleMap& map) {
+  static const Words kTeeth{"teeth", "flank", "tooth force", "rigid teeth"};
+  static const Words kPistons{"pistons", "piston", "sum of the wall forces",
+                              "one piston without play"};
+  return by_pistons(map) ? kPistons : kTeeth;
+}
 
 std::size_t two_states_of(const RattleMap& map) {
   std::size_t count = 0;
@@ -106,9 +119,11 @@ std::vector<std::string> answers_of(const RattleMap& map) {
       unknown == 0 ? "" : fmt::format(" {} of its speeds could not be computed.", unknown);
   return {at +
           (text.empty()
-               ? "the teeth are loaded throughout the turn at all speeds of the map."
-               : "avoid " + text +
-                     " rpm: the teeth are not loaded throughout the turn (speeds of the map).") +
+               ? fmt::format("the {} are loaded throughout the turn at all speeds of the map.",
+                             words(map).contacts)
+               : fmt::format("avoid {} rpm: the {} are not loaded throughout the turn (speeds of "
+                             "the map).",
+                             text, words(map).contacts)) +
           open};
 }
 
@@ -152,8 +167,9 @@ report::Section settings_section(const RattleMap& map) {
     section.facts.emplace_back(name, text);
   };
   add("first point",
-      "the lowest speed, from theta = psi = 0, the middle of the backlash, both at "
-      "the shaft's speed");
+      fmt::format("the lowest speed, from theta = psi = 0, the middle of the {}, both at the "
+                  "shaft's speed",
+                  by_pistons(map) ? "free play" : "backlash"));
   add("every other point",
       "from the final state of the neighbouring point: up in speed, then down");
   add("discarded", fmt::format("{} turns, fewer where the motion repeats itself", o.discard));
@@ -165,10 +181,15 @@ report::Section settings_section(const RattleMap& map) {
   add("in touch throughout",
       fmt::format("{} turns without separation: the last of them is observed", kTurnsInTouch));
   add("impact", fmt::format("a touch at {:g} m/s of approach or more", kImpactSpeed));
-  add("largest impulse",
-      "from an impact until its flank leaves (rattle.csv: largest_impulse_Ns): of teeth that hit "
-      "once and then carry, with what they carry");
-  add("loses contact", fmt::format("no flank touches for more than {:g} of the time", kNoGap));
+  if (by_pistons(map)) {
+    add("sides", "the sign of theta - psi when a piston touches its wall");
+  } else {
+    add("largest impulse",
+        "from an impact until its flank leaves (rattle.csv: largest_impulse_Ns): of teeth that hit "
+        "once and then carry, with what they carry");
+  }
+  add("loses contact",
+      fmt::format("no {} touches for more than {:g} of the time", words(map).contact, kNoGap));
   add("two steady states",
       fmt::format("up and down differ in class, or the largest force of every turn of one is above "
                   "all of the other and {:g} % larger",
@@ -203,14 +224,20 @@ report::Section classes_section(const RattleMap& map) {
   return section;
 }
 
-report::Section boundary_section(const BoundaryAgreement& agreement) {
+report::Section boundary_section(const RattleMap& map) {
+  const BoundaryAgreement agreement = boundary_agreement(map);
   report::Section section{
       "Boundary by the criterion",
-      "Rigid teeth keep the sign of their force as long as the drag on the block, Cc psi', and "
-      "what its pistons take exceed what they turn it on by, all through the turn. The speed at "
-      "which the smallest force passes 0, beside the speed half way between those where the upward "
-      "sweep ceases or begins to carry: " +
-          agreement_text(agreement) + ".",
+      std::string(by_pistons(map) ? "A transfer without play keeps the sign of its torque"
+                                  : "Rigid teeth keep the sign of their force") +
+          " as long as the drag on the block, Cc psi', and "
+          "what its pistons take exceed what they turn it on by, all through the turn. The speed "
+          "at which the smallest force passes 0, beside the speed half way between those where the "
+          "upward sweep ceases or begins to carry: " +
+          agreement_text(agreement) + "." +
+          (by_pistons(map) ? " In the free play pistons under pressure push the block away from the "
+                             "middle, which the criterion does not have."
+                           : ""),
       {},
       {{"delivery pressure, bar", "criterion, rpm", "simulated, rpm", "difference, rpm"}, {}}};
   for (const auto& place : agreement.places)
@@ -272,7 +299,10 @@ class MapFigures {
     for (const RattleRow& row : map.rows) most = std::max(most, row.boundary_rpm.size());
     for (std::size_t k = 0; k < most; ++k) {
       report::XySeries line{
-          k == 0 ? "criterion: at lower speed rigid teeth reverse" : "criterion, again", {}, {}};
+          k == 0 ? fmt::format("criterion: at lower speed {} would reverse", words(map).criterion)
+                 : "criterion, again",
+          {},
+          {}};
       for (const RattleRow& row : map.rows) {
         line.x.push_back(k < row.boundary_rpm.size() ? row.boundary_rpm[k] : not_computed());
         line.y.push_back(row.delivery_bar);
@@ -340,25 +370,30 @@ class MapFigures {
 
 std::vector<report::Figure> map_figures(const RattleMap& map) {
   const MapFigures make(map);
+  const Words& of = words(map);
   std::vector<report::Figure> figures = {
-      make.classes("classes", "Motion of the teeth, speed swept up", &RattleRow::up)};
-  figures.front().note =
-      "One rectangle per point. The line is where the smallest force of rigid teeth over the turn "
-      "passes 0.";
+      make.classes("classes", fmt::format("Contact of the {}, speed swept up", of.contacts),
+                   &RattleRow::up)};
+  figures.front().note = fmt::format(
+      "One rectangle per point. The line is where the smallest force of {} over the turn passes 0.",
+      of.criterion);
   if (!rigid(map)) {
     figures.push_back(
-        make.classes("classes_down", "Motion of the teeth, speed swept down", &RattleRow::down));
+        make.classes("classes_down", fmt::format("Contact of the {}, speed swept down", of.contacts),
+                     &RattleRow::down));
     figures.push_back(make.linear("apart", "Share of the time without contact, swept up",
                                   {"share of the time", "%"},
                                   [](const RattlePoint& p) { return 100 * p.apart; }));
     figures.push_back(make.linear("impacts", "Impacts per turn, swept up", {"impacts per turn"},
                                   [](const RattlePoint& p) { return p.impacts; }));
   }
-  figures.push_back(make.figure("over_mean", "Largest tooth force over the mean, swept up",
+  figures.push_back(make.figure("over_mean",
+                                fmt::format("Largest {} over the mean, swept up", of.force),
                                 {"largest over mean"}, &RattleRow::up,
                                 [](const RattlePoint& p) { return p.over_mean(); }));
-  figures.push_back(make.figure("largest", "Largest tooth force, swept up", {"force", "N"},
-                                &RattleRow::up, [](const RattlePoint& p) { return p.largest; }));
+  figures.push_back(make.figure("largest", fmt::format("Largest {}, swept up", of.force),
+                                {"force", "N"}, &RattleRow::up,
+                                [](const RattlePoint& p) { return p.largest; }));
   return figures;
 }
 
@@ -367,24 +402,27 @@ std::vector<report::Figure> map_figures(const RattleMap& map) {
 report::Document rattle_document(const RattleMap& map, const report::Lines& program,
                                  const CaseDescription& description) {
   report::Document document =
-      case_document(description, map.the_case.name + ": where the gear rattles", program);
+      case_document(description,
+                    map.the_case.name +
+                        (by_pistons(map) ? ": where the block rattles" : ": where the gear rattles"),
+                    program);
   document.verdict = report::Verdict{map.agrees(), headline(map)};
   document.verdict->answers = answers_of(map);
   if (map.checks.empty()) {
     document.verdict->agrees.reset();
     document.verdict->word = "Map";
   }
-  document.meaning = map.checks.empty()
-                         ? "Motion of the teeth by the closed form; a class is that of the "
-                           "observed turns, with the thresholds below. Nothing was compared: "
-                           "--check-points N recomputes points by Simbody."
-                         : "Motion of the teeth by the closed form; a class is that of the "
-                           "observed turns, with the thresholds below. Simbody's model, from the "
-                           "same states, verifies the equations of motion.";
+  document.meaning =
+      fmt::format("Contact of the {} by the closed form; a class is that of the observed turns, with "
+                  "the thresholds below. {}",
+                  words(map).contacts,
+                  map.checks.empty()
+                      ? "Nothing was compared: --check-points N recomputes points by Simbody."
+                      : "Simbody's model, from the same states, verifies the equations of motion.");
   document.runs.emplace();
   document.runs->push_back(settings_section(map));
   document.runs->push_back(classes_section(map));
-  document.runs->push_back(boundary_section(boundary_agreement(map)));
+  document.runs->push_back(boundary_section(map));
   if (!rigid(map)) document.runs->push_back(states_section(map));
   if (!map.checks.empty()) document.runs->push_back(checks_section(map));
   document.figures = map_figures(map);

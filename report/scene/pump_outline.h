@@ -35,7 +35,8 @@ struct PumpOutline {
         block_to(std::max(near, far) + 0.55 * bore),
         block_radius(geometry.bore_circle_radius + 0.72 * bore),
         plate(0.22 * bore),
-        gear_radius(pump.gear.pitch_diameter / 2),
+        has_gear(pump.transfer.kind == TransferKind::gear),
+        gear_radius(has_gear ? pump.gear.pitch_diameter / 2 : 0),
         gear_z(geometry.axis_offset - gear_radius * std::tan(geometry.tilt / 2)),
         bearing_half(0.13 * size),
         bearing_height(0.34 * size) {}
@@ -43,6 +44,8 @@ struct PumpOutline {
   static constexpr double kFar = 3.2;        ///< of the pump's size: what lies beyond is named only
   static constexpr double kGearFace = 0.72;  ///< of the pitch cone: there its teeth begin
 
+  /// Of the joint that carries the block, from O2.
+  double transfer_radius() const { return 0.5 * geometry.joint_circle_radius; }
   bool is_far(double length) const { return std::abs(length) > kFar * size; }
 
   /// x2, y2 of the joint of a piston at chamber angle theta (9).
@@ -68,7 +71,8 @@ struct PumpOutline {
   double bore, ball, flange_radius, flange, shaft_radius, shaft_end;
   double near, far;  ///< z of B at 0 and at 180 degrees
   double block_from, bore_bottom, block_to, block_radius, plate;
-  double gear_radius, gear_z;  ///< pitch circle, of the shaft's gear
+  bool has_gear;
+  double gear_radius, gear_z;  ///< pitch circle, of the shaft's gear; 0 where there is none
   double bearing_half, bearing_height;
 };
 

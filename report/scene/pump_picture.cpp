@@ -45,6 +45,7 @@ constexpr const char* kStyle = R"(
 .bentaxis-pump .joints { fill: none; stroke: #3b82c4; stroke-width: 1.5px; stroke-dasharray: 6 3; }
 .bentaxis-pump .lean { fill: none; stroke: #3b82c4; stroke-width: 2.4px; }
 .bentaxis-pump .gear { fill: none; stroke: #1f9d6b; stroke-width: 1.5px; }
+.bentaxis-pump .gear-point { fill: #1f9d6b; stroke: none; }
 .bentaxis-pump .bearing { fill: #b06fb8; fill-opacity: 0.28; stroke: #b06fb8; stroke-width: 1.4px; }
 .bentaxis-pump .pin { fill: none; stroke: #d08a00; stroke-width: 3px; }
 .bentaxis-pump .pin-point { fill: #d08a00; stroke: none; }
@@ -213,7 +214,7 @@ class Picture {
   }
   bool is_far(double z) const { return o_.is_far(z); }
   double gear_radius() const { return o_.gear_radius; }
-  bool gear_is_far() const { return o_.is_far(gear_radius()); }
+  bool gear_is_drawn() const { return o_.has_gear && !o_.is_far(gear_radius()); }
 
   void make_room() {
     const double flange = flange_radius();
@@ -228,13 +229,13 @@ class Picture {
       side_.room({(is_far(z) ? std::copysign(kFar * size_, z) : z) + std::copysign(0.36 * size_, z),
                   is_far(z) ? 0 : below});
     if (!is_far(p_.block.pin_z)) side_.room(from_block(p_.block.pin_z, 0));
-    if (!gear_is_far())
+    if (gear_is_drawn())
       for (const double y : {-1.0, 1.0}) {
         side_.room({gear_z(), y * gear_radius()});
         side_.room(from_block(gear_radius() * std::tan(g_.tilt / 2), y * gear_radius()));
       }
     const double joints_radius =
-        std::max({flange, gear_is_far() ? 0 : gear_radius(), g_.joint_circle_radius + ball()});
+        std::max({flange, gear_is_drawn() ? gear_radius() : 0, g_.joint_circle_radius + ball()});
     square(joints_, joints_radius);
     double block_radius =
         std::max({block_radius_, g_.bore_circle_radius + bore() / 2, g_.joint_circle_radius});
@@ -253,6 +254,9 @@ class Picture {
   void draw_piston(double theta, double sign);
   void draw_bearing(double z, bool tapered);
   void draw_gear_cones();
+  void draw_joint_at_centre();
+  void draw_wall_contact(double theta, double sign);
+  std::string transfer_words() const;
   void draw_joints();
   void draw_block();
   void draw_port(const PortArc& arc, const char* style);
@@ -285,12 +289,15 @@ void Picture::draw_side() {
   v.path("pale", {from_block(block_from_, -block_radius_), from_block(block_to_, -block_radius_),
                   from_block(block_to_, block_radius_), from_block(block_from_, block_radius_)});
   draw_gear_cones();
+  draw_joint_at_centre();
   // Axes, crossing at O2.
   v.line("axis", {shaft_end - 0.08 * size_, 0}, {0.35 * size_, 0});
   v.line("axis", from_block(-0.2 * size_, 0), from_block(block_to_ + 0.32 * bore(), 0));
   v.line("edge", {0, -g_.joint_circle_radius}, {0, g_.joint_circle_radius});
   draw_piston(0, 1);
   draw_piston(kPi, -1);
+  draw_wall_contact(0, 1);
+  draw_wall_contact(kPi, -1);
   // Lands and groove of the plate, in section.
   if (p_.port_plate && p_.port_plate->r4 < kFar * size_) {
     const PortPlate& plate = *p_.port_plate;
@@ -402,7 +409,7 @@ void Picture::draw_bearing(double z, bool tapered) {
 
 void Picture::draw_gear_cones() {
   View& v = side_;
-  if (gear_is_far()) return;
+  if (!gear_is_drawn()) return;
   const double r = gear_radius(), behind = r * std::tan(g_.tilt / 2);
   const Point apex = from_block(0, 0);
   const double back = PumpOutline::kGearFace;  // the teeth are at the outer end of the cone
@@ -416,12 +423,72 @@ void Picture::draw_gear_cones() {
   v.words("O4", contact, -8, -8, "end");
 }
 
+// At O2: of a universal joint both arms, of a constant-velocity joint the plane in which its balls
+// stand.
+void Picture::draw_joint_at_centre() {
+  if (!p_.transfer.is_joint()) return;
+  View& v = side_;
+  const Point o2 = from_block(0, 0);
+  const double r = o_.transfer_radius();
+  if (p_.transfer.kind == TransferKind::constant_velocity) {
+    const Point across{-r * std::sin(g_.tilt / 2), r * std::cos(g_.tilt / 2)};
+    v.circle("gear", o2, r);
+    v.line("gear", o2 - across, o2 + across);
+    for (const double sign : {-1.0, 1.0}) v.dot("gear-point", o2 + sign * 0.8 * across, 4);
+    v.words("constant-velocity joint", o2 - across, 0, 16, "middle small");
+    return;
+  }
+  const double phase = p_.transfer.cardan.value_or(CardanJoint()).phase;
+  const double psi = block_lead(p_, 0);
+  const Point of_shaft{0, -r * std::sin(phase)};
+  const Point of_block = from_block(0, r * std::cos(psi - phase)) - o2;
+  for (const Point& arm : {of_shaft, of_block}) {
+    v.line("gear", o2 - arm, o2 + arm);
+    v.dot("gear-point", o2 - arm, 4);
+    v.dot("gear-point", o2 + arm, 4);
+  }
+  v.words("universal joint", o2 - of_block, 0, 16, "middle small");
+}
+
+// Where a piston's axis has its contact with the wall of the bore.
+void Picture::draw_wall_contact(double theta, double sign) {
+  if (p_.transfer.kind != TransferKind::pistons) return;
+  const Point a{0, sign * g_.joint_circle_radius};
+  const Point b = from_block(o_.piston_end(theta), sign * g_.bore_circle_radius);
+  const Point d = a + (p_.transfer.wall->from_joint / g_.piston_length) * (b - a);
+  side_.dot("gear-point", d, 4);
+  side_.words("D", d, 6, sign > 0 ? 14 : -5);
+}
+
+std::string Picture::transfer_words() const {
+  switch (p_.transfer.kind) {
+    case TransferKind::gear:
+      return fmt::format("pitch circle d {} mm{}", mm_text(p_.gear.pitch_diameter),
+                         gear_is_drawn() ? "" : " (outside the picture)");
+    case TransferKind::constant_velocity:
+      return "constant-velocity joint at O2";
+    case TransferKind::cardan:
+      return fmt::format("universal joint at O2, phase {:.4g}\u00b0",
+                         p_.transfer.cardan.value_or(CardanJoint()).phase / kRadPerDegree);
+    case TransferKind::pistons:
+      break;
+  }
+  return fmt::format("D {} mm from A, clearance {} mm", mm_text(p_.transfer.wall->from_joint),
+                     mm_text(p_.transfer.wall->clearance));
+}
+
 // S1 against z1: x1 to the right, y1 upwards, positive angles to the left.
 void Picture::draw_joints() {
   View& v = joints_;
   v.circle("pale", {0, 0}, flange_radius());
   v.circle("joints", {0, 0}, g_.joint_circle_radius);
-  if (!gear_is_far()) v.circle("gear", {0, 0}, gear_radius());
+  if (gear_is_drawn()) v.circle("gear", {0, 0}, gear_radius());
+  if (p_.transfer.kind == TransferKind::cardan) {
+    const double phase = p_.transfer.cardan.value_or(CardanJoint()).phase;
+    const Point arm = o_.transfer_radius() * Point{std::cos(phase), -std::sin(phase)};
+    v.line("gear", -1 * arm, arm);
+    for (const double sign : {-1.0, 1.0}) v.dot("gear-point", sign * arm, 4);
+  }
   const double arm = v.high().y;
   v.line("axis", {-arm, 0}, {arm, 0});
   v.line("axis", {0, -arm}, {0, arm});
@@ -433,12 +500,10 @@ void Picture::draw_joints() {
     if (g_.pistons <= 12) v.words(std::to_string(k + 1), a, 0, 4, "middle");
   }
   const double left = v.column();
-  v.paper("Joints and gear", {left, 20}, "title");
+  v.paper(o_.has_gear ? "Joints and gear" : "Joints", {left, 20}, "title");
   v.paper("against the shaft axis: x1 right, y1 up", {left, 36}, "small");
   v.paper("joint circle Ra " + mm_text(g_.joint_circle_radius) + " mm", {left, bottom_ + 24});
-  v.paper(fmt::format("pitch circle d {} mm{}", mm_text(p_.gear.pitch_diameter),
-                      gear_is_far() ? " (outside the picture)" : ""),
-          {left, bottom_ + 42});
+  v.paper(transfer_words(), {left, bottom_ + 42});
 }
 
 void Picture::draw_port(const PortArc& arc, const char* style) {
@@ -510,10 +575,10 @@ void Picture::draw_rule(double scale) {
   const double y = bottom_ + 66, left = side_.column();
   rule_ = fmt::format(
       "<path class=\"edge\" d=\"M{0} {1}v6h{2}v-6\"/>\n<text class=\"small\" x=\"{3}\" "
-      "y=\"{4}\">{5} mm. Blue: pistons, dashed the circle of their joints; green: pitch circle; "
-      "pale: "
-      "outlines that the case does not give; dots: centres of mass</text>\n",
-      px(left), px(y), px(step * scale), px(left + step * scale + 8), px(y + 8), mm_text(step));
+      "y=\"{4}\">{5} mm. Blue: pistons, dashed the circle of their joints; green: {6}; "
+      "pale: outlines that the case does not give; dots: centres of mass</text>\n",
+      px(left), px(y), px(step * scale), px(left + step * scale + 8), px(y + 8), mm_text(step),
+      o_.has_gear ? "pitch circle" : "what turns the block");
 }
 
 }  // namespace

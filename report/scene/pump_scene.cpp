@@ -54,17 +54,17 @@ class SceneMaker {
         outline_(p_),
         shapes_(pump_shapes(the_case, outline_)),
         runs_(runs),
-        layout_(g_.pistons) {
+        layout_(p_) {
     axes_["S1"] = {report::Point{1, 0, 0}, report::Point{0, 1, 0}, report::Point{0, 0, 1}};
     axes_["S2"] = {report::Point{1, 0, 0}, report::Point{0, outline_.cosine, -outline_.sine},
                    report::Point{0, outline_.sine, outline_.cosine}};
-    axes_["S4"] = tooth_axes(the_case.operation.speed_rpm < 0 ? -1 : 1);
+    if (outline_.has_gear) axes_["S4"] = tooth_axes(the_case.operation.speed_rpm < 0 ? -1 : 1);
   }
 
   report::Scene scene(const SceneMotion* motion) {
     for (const SceneRun& run : runs_) scene_.models.push_back(run.table.name);
     scene_.rows = runs_[0].table.rows();
-    for (const char* frame : {"S1", "S2", "S4"}) scene_.frames.emplace_back(frame, axes_[frame]);
+    for (const auto& [frame, axes] : axes_) scene_.frames.emplace_back(frame, axes);
     add_bodies(motion);
     add_loads();
     scene_.note = shapes_.note;
@@ -140,7 +140,11 @@ class SceneMaker {
 
 void SceneMaker::add_bodies(const SceneMotion* motion) {
   const auto turning = [&](const std::vector<double> SceneMotion::*of) {
-    if (motion == nullptr) return report::Turning{{0, kRadPerDegree, "theta_deg"}};
+    if (motion == nullptr) {
+      if (of == &SceneMotion::block && layout_.has(Quantity::psi))
+        return report::Turning{channel(layout_.psi(), kRadPerDegree)};
+      return report::Turning{{0, kRadPerDegree, "theta_deg"}};
+    }
     report::Values turn;
     for (const double angle : motion->*of) turn.push_back(std::remainder(angle, 2 * kPi));
     return report::Turning{add_series(std::move(turn))};
@@ -217,6 +221,8 @@ Place SceneMaker::place_of(const BodyLoad& load, const SceneRun& run, std::size_
     const auto& between = std::get<report::Between>(found->motion);
     if (load.point == "A" + std::to_string(number)) return between.from;
     if (load.point == "B" + std::to_string(number)) return between.to;
+    if (load.point == "D" + std::to_string(number))
+      return {piston, constant({0, 0, p_.transfer.wall->from_joint})};
     if (starts(load.point, "contact point"))
       return {piston, constant({0, 0, p_.piston.contact.value_or(g_.piston_length)})};
   }
@@ -476,10 +482,14 @@ BodyLoadTable every(std::size_t step, const BodyLoadTable& table) {
 // Between neighbours of a path of continuous pressure lies a hundredth of it; more is a jump.
 constexpr double kPathJump = 0.1;
 
-/// Fh's point in the plate's x and y over one N-th of a turn, which all others repeat.
-std::vector<std::vector<std::array<double, 2>>> film_path(int pistons, const ResultTable& table) {
-  const std::size_t pitch = table.rows() / static_cast<std::size_t>(pistons);
-  const ChannelLayout layout(pistons);
+/// Fh's point in the plate's x and y over one N-th of a turn, which all others repeat; behind a
+/// universal joint they do not.
+std::vector<std::vector<std::array<double, 2>>> film_path(const PumpParameters& pump,
+                                                          const ResultTable& table) {
+  const bool repeats = pump.transfer.kind != TransferKind::cardan;
+  const std::size_t pitch =
+      table.rows() / static_cast<std::size_t>(repeats ? pump.geometry.pistons : 1);
+  const ChannelLayout layout(pump);
   std::vector<std::array<double, 2>> points;
   double reach = 0;
   for (std::size_t i = 0; i <= pitch; ++i) {
@@ -512,7 +522,7 @@ report::Scene pump_scene(const Case& the_case, const std::vector<SceneRun>& runs
       throw ComputationError("the pump in space: runs of different rows");
   std::vector<report::SceneSum> sums = sums_of(runs);
   const auto add_film_path = [&](report::Scene& scene) {
-    if (path != nullptr) scene.film_path = film_path(the_case.pump.geometry.pistons, *path);
+    if (path != nullptr) scene.film_path = film_path(the_case.pump, *path);
   };
   const std::size_t step = (rows + kMaxSceneRows - 1) / kMaxSceneRows;
   if (step <= 1) {

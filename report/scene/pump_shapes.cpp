@@ -57,7 +57,9 @@ class Shapes {
 
   PumpShapes all() {
     shapes_.note =
-        "To scale: joints, bores, pistons' length and bore, axes, gear, pin, centres of bearings"
+        std::string("To scale: joints, bores, pistons' length and bore, axes, ") +
+        (o_.has_gear ? "gear, " : "") +
+        "pin, centres of bearings"
         " and the ports and lands of the plate. Of no dimension in the case, so of a size chosen "
         "here: shaft and flange, ball joints, rods, outside and bottom of the block, thickness of "
         "the plate, bearings";
@@ -66,7 +68,7 @@ class Shapes {
     block();
     plate();
     bearings();
-    gear();
+    transfer();
     pin();
     shapes_.note += ".";
     return std::move(shapes_);
@@ -81,6 +83,7 @@ class Shapes {
   void notches(const PlatePort& port, Look look);
   void bearings();
   void gear();
+  void transfer();
   void pin();
   void line(std::vector<Shape>& shapes, Look look, double from, double to) {
     shapes.push_back({report::Wire{{{0, 0, from}, {0, 0, to}}, false}, look});
@@ -295,6 +298,54 @@ report::Mesh teeth(const BevelTooth& tooth, double apex_z, double up, double ahe
     }
   }
   return mesh;
+}
+
+// What turns the block: a gear, a joint at O2, or pistons that touch their bores at D.
+void Shapes::transfer() {
+  const double r = o_.transfer_radius(), thick = 0.06 * o_.size;
+  switch (p_.transfer.kind) {
+    case TransferKind::gear:
+      return gear();
+    case TransferKind::constant_velocity: {
+      // Either half a bell about O2.
+      const auto bell = [&](double centre, double up) {
+        Line profile;
+        constexpr int kPoints = 8;
+        for (int i = 0; i <= kPoints; ++i) {
+          const double at = kPi / 2 * i / kPoints;
+          profile.push_back({r * std::cos(at), centre - up * r * std::sin(at)});
+        }
+        return report::Lathe{profile};
+      };
+      shapes_.shaft.push_back({bell(g_.axis_offset, 1), Look::gear, true});
+      shapes_.block.push_back({bell(0, -1), Look::gear, true});
+      shapes_.note += "; the constant-velocity joint is drawn as two bells";
+      return;
+    }
+    case TransferKind::cardan: {
+      const double phase = p_.transfer.cardan.value_or(CardanJoint()).phase;
+      const auto arm = [&](double x, double y, double z) {
+        return report::Wire{{{-r * x, -r * y, z}, {r * x, r * y, z}}, false};
+      };
+      // In each body's own axes, which turn with it.
+      const double c = std::cos(phase), s = std::sin(phase);
+      shapes_.shaft.push_back({arm(c, -s, g_.axis_offset), Look::gear});
+      shapes_.block.push_back({arm(s, c, 0), Look::gear});
+      for (const double sign : {-1.0, 1.0}) {
+        shapes_.shaft.push_back(
+            {report::Ball{{sign * r * c, -sign * r * s, g_.axis_offset}, thick}, Look::gear});
+        shapes_.block.push_back({report::Ball{{sign * r * s, sign * r * c, 0}, thick}, Look::gear});
+      }
+      shapes_.note += "; of the universal joint the arms of both forks are drawn";
+      return;
+    }
+    case TransferKind::pistons:
+      break;
+  }
+  shapes_.piston.push_back(
+      {report::Ball{{0, 0, p_.transfer.wall->from_joint}, o_.bore / 2 - p_.transfer.wall->clearance},
+       Look::gear});
+  shapes_.note += "; green on each piston: the sphere that touches the wall of its bore";
 }
 
 void Shapes::gear() {

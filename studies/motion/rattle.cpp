@@ -146,6 +146,10 @@ bool RattleMap::agrees() const {
 
 Case rattle_case(Case the_case, double speed_rpm, double delivery_bar) {
   require_pressure_asked_for(the_case);
+  if (the_case.pump.transfer.is_joint())
+    throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") +
+                     "[transfer] kind = \"" + to_string(the_case.pump.transfer.kind) +
+                     "\": must be \"gear\" or \"pistons\": a joint has no play");
   the_case.operation.speed_rpm = speed_rpm;
   the_case.pressure.ports.delivery = pascals(delivery_bar);
   DriveSpec drive;

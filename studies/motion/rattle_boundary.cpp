@@ -1,5 +1,6 @@
 // The criterion of the rattle map: rigid teeth keep the sign of their force as long as the drag on
-// the block exceeds what the pistons turn it on by.
+// the block exceeds what the pistons turn it on by. Of pistons that carry the block it is the force
+// of one that alone carries what a constant-velocity joint would.
 #include <algorithm>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
@@ -17,6 +18,12 @@ std::pair<double, double> rigid_extremes(const PreparedCase& ready) {
   pump.gear.contact = ToothContact::rigid;
   pump.gear.compliance.reset();
   pump.gear.teeth.reset();
+  double arm = 0;  // m, of a wall's force
+  if (pump.transfer.kind == TransferKind::pistons) {
+    arm = pump.geometry.bore_circle_radius *
+          (1 - pump.transfer.wall->from_joint / pump.geometry.piston_length);
+    pump.transfer.kind = TransferKind::constant_velocity;
+  }
   const analytic::Model model(pump, ready.assumptions(Model::analytic));
   const int pistons = pump.geometry.pistons;
   const double omega = rad_per_second(c.operation.speed_rpm);
@@ -30,7 +37,7 @@ std::pair<double, double> rigid_extremes(const PreparedCase& ready) {
       instant.chamber_pressure[static_cast<std::size_t>(k)] =
           ready.pressure(piston_angle_deg(degrees, k + 1, pistons));
     model.reactions(instant, values);
-    return values[model.layout().Rcs()];
+    return arm > 0 ? values[model.layout().carrying()] / arm : values[model.layout().Rcs()];
   };
   // All pistons do the same: an N-th of a turn is all there is.
   constexpr int kAngles = 144;

@@ -128,7 +128,7 @@ double step_tolerance(double error) {
 RattlePoint settle(const PreparedCase& ready, const RattleOptions& options, double& lag,
                    double& lag_rate, const std::function<void()>& turn) {
   const Case& c = ready.the_case;
-  if (c.pump.gear.contact == ToothContact::rigid) {
+  if (!c.pump.block_moves_freely()) {
     turn();
     return rigid_point(ready);
   }

@@ -796,8 +796,10 @@ PreparedCase prepare_simulation(Case the_case, const SimulationChoice& choice,
     // [operation].
     if (the_case.drive->start_speed == 0.0) the_case.drive->start_speed.reset();
   }
-  if (!hydraulic || choice.oil == OilInTime::periodic || hydraulics::needs_periodic_state(the_case))
+  if (!hydraulic || choice.oil == OilInTime::periodic)
     return prepare(std::move(the_case), progress_of);
+  if (hydraulics::needs_periodic_state(the_case))
+    return prepare_start(std::move(the_case), progress_of);
   PreparedCase ready;
   ready.the_case = std::move(the_case);
   return ready;

@@ -113,9 +113,14 @@ void require_mesh(const Case& the_case) {
 
 PreparedCase prepare(Case the_case, const PartProgress& progress_of) {
   require_mesh(the_case);
+  if (the_case.pressure.kind == PressureKind::hydraulic) require_constant_speed(the_case);
+  return prepare_start(std::move(the_case), progress_of);
+}
+
+PreparedCase prepare_start(Case the_case, const PartProgress& progress_of) {
+  require_mesh(the_case);
   std::optional<hydraulics::SteadyState> state;
   if (the_case.pressure.kind == PressureKind::hydraulic) {
-    require_constant_speed(the_case);
     state = hydraulics::steady_state(the_case, {}, progress_of("hydraulics"));
     hydraulics::give_to(the_case, *state);
   }

@@ -54,7 +54,7 @@ class OpenSystem {
 
   /// d(values)/dt. @return false where a value is not finite
   bool rates(std::vector<double>& rates);
-  /// Positive between the edges; of a flank its approach, m.
+  /// Positive between the edges; of a contact its approach, m.
   void indicator_values(std::vector<double>& values) const;
   /// The edges on both sides of the block, rad, are anew those around where it stands.
   void pass_event();
@@ -73,6 +73,7 @@ class OpenSystem {
   std::vector<OpenIndicator> indicators_;
   std::vector<std::size_t> active_;  // of the states of motion
   std::vector<double> knots_;
+  std::vector<int> contacts_;
   std::unique_ptr<PortEdges> edges_;
   Surroundings outside_;
   bool angle_is_state_;

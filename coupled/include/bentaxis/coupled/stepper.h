@@ -16,7 +16,7 @@ namespace bentaxis::coupled {
 struct PassedEvent {
   enum class Kind {
     edge,     ///< the block has passed an edge of a port
-    touch,    ///< a flank of the teeth has begun to touch
+    touch,    ///< a flank of the teeth, or a piston and its wall, has begun to touch
     release,  ///< it has left the other
     knot      ///< a law over time has changed
   };
@@ -24,6 +24,7 @@ struct PassedEvent {
   double time = 0;   ///< s
   double angle = 0;  ///< of an edge: rad, of the block
   int flank = 1;     ///< of a touch and a release: +1, -1
+  int piston = 0;    ///< of those of walls: 1..N; 0: teeth
 };
 
 /// Follows motion and oil as simulate() does. Steps of the integrator go on over communication

@@ -1,4 +1,4 @@
-// Contact of the teeth while a pump runs, by intervals of time.
+// Contact of teeth, or of pistons that carry the block, while a pump runs, by intervals of time.
 #pragma once
 
 #include <memory>
@@ -9,17 +9,18 @@
 
 namespace bentaxis::coupled {
 
-/// Of an interval of time.
+/// Of an interval of time. Where pistons carry the block, contacts are those of pistons and walls,
+/// a side is the sign of theta - psi at the touch, and the force is the sum of all wall forces.
 struct ToothStretch {
   double duration = 0;     ///< s
-  double apart = 0;        ///< s without touch of a flank
-  double plus = 0;         ///< s on the flank that pushes the block towards +psi
+  double apart = 0;        ///< s without touch of a contact
+  double plus = 0;         ///< s on the side that pushes the block towards +psi
   double minus = 0;        ///< s on the other
   double largest = 0;      ///< N, of the tooth force
   double impulse = 0;      ///< Ns, integral of the magnitude of the tooth force
-  int separations = 0;     ///< flanks that left
+  int separations = 0;     ///< contacts that left
   int impacts = 0;         ///< touches as fast as an impact
-  double largest_hit = 0;  ///< Ns, of impacts whose flanks left again in the interval
+  double largest_hit = 0;  ///< Ns, of impacts whose flanks left again in the interval; not of walls
 };
 
 /// Both intervals as one.

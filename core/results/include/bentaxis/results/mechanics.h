@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 #include "bentaxis/results/body_loads.h"
@@ -18,13 +19,13 @@ namespace bentaxis {
 enum MotionIndex : std::size_t {
   kTurn,         ///< theta less the start's speed times time, rad; 0 where the speed is given
   kTurnRate,     ///< rad/s, likewise
-  kLag,          ///< theta - psi, rad, with compliant contact
+  kLag,          ///< theta - psi, rad, with compliant contact or pistons that carry the block
   kLagRate,      ///< rad/s
   kTwist,        ///< of the coupling, phi - theta, rad
   kTwistRate,    ///< rad/s
   kWorkOfLoads,  ///< J, as in TrajectoryRecord
   kWorkOfDrive,  ///< J
-  kImpulse,      ///< Ns, integral of the magnitude of the tooth force
+  kImpulse,      ///< Ns, integral of the magnitude of the tooth force, or of all wall forces
   kMotionStates
 };
 using MotionVector = std::array<double, kMotionStates>;
@@ -54,10 +55,21 @@ class Mechanics {
   /// Angles and speeds; accelerations are not filled in.
   virtual AxisMotion shaft(double time, const MotionVector& y) const = 0;
   virtual AxisMotion block(double time, const MotionVector& y) const = 0;
-  /// Of a flank (+1: the shaft pushes the block towards +psi, -1) with compliant contact, m;
-  /// below 0: the gap; and its rate, m/s. Of teeth the largest of any pair and slice.
-  virtual double approach(double time, const MotionVector& y, int flank) const = 0;
-  virtual double approach_rate(double time, const MotionVector& y, int flank) const = 0;
+  /// Whether pistons carry the block: contacts are then walls of their bores.
+  virtual bool carried_by_pistons() const { return false; }
+  /// What can touch, as approach() numbers it: compliant flanks (+1: the shaft pushes the block
+  /// towards +psi, -1), or pistons 1 to N.
+  std::vector<int> contacts() const {
+    if (!compliant()) return {};
+    if (!carried_by_pistons()) return {1, -1};
+    std::vector<int> pistons(static_cast<std::size_t>(layout().pistons()));
+    std::iota(pistons.begin(), pistons.end(), 1);
+    return pistons;
+  }
+  /// Of a contact, m; below 0: the gap; and its rate, m/s. Of teeth the largest of any pair and
+  /// slice.
+  virtual double approach(double time, const MotionVector& y, int contact) const = 0;
+  virtual double approach_rate(double time, const MotionVector& y, int contact) const = 0;
   /// State of the teeth there; false where contact is not resolved.
   virtual bool teeth(double /*time*/, const MotionVector& /*y*/, TeethAction& /*action*/) {
     return false;
@@ -79,9 +91,12 @@ class Mechanics {
                                            const OilLoads& /*loads*/) {
     return {};
   }
-  /// Of all bodies and of the rotor, J; of the teeth and the coupling, J.
+  /// Of all bodies and of the rotor, J; of flanks and the coupling, J; with what walls hold, J.
   virtual double kinetic_energy(double time, const MotionVector& y) = 0;
   virtual double potential_energy(const MotionVector& y) const = 0;
+  virtual double elastic_energy(double /*time*/, const MotionVector& y) const {
+    return potential_energy(y);
+  }
 };
 
 }  // namespace bentaxis

@@ -1,4 +1,6 @@
-// Where the gear rattles: what its teeth do over speed and delivery pressure.
+// Where the block rattles: contact of its gear's teeth, or of the pistons that carry it, over speed
+// and delivery pressure. With pistons, flanks are sides of the free play and a tooth force is the
+// sum of all wall forces.
 #pragma once
 
 #include <cstddef>

@@ -48,6 +48,11 @@ using ReadyCase [[deprecated("use PreparedCase")]] = PreparedCase;
 /// @throws InputError, ComputationError
 PreparedCase prepare(Case the_case, const PartProgress& progress_of = silent());
 
+/// As prepare(), for oil that only starts there and then follows the motion: of a pump with a
+/// universal joint or with pistons that carry the block, the periodic state is that of a block that
+/// turns with the shaft.
+PreparedCase prepare_start(Case the_case, const PartProgress& progress_of = silent());
+
 /// The largest error of any reaction over its peak that an integrated run may have: integrator and
 /// accuracy are chosen for it by a short calibration, and the run is verified.
 struct ErrorTarget {
