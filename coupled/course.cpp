@@ -136,8 +136,7 @@ void HybridIntegrator::contact_changes(std::size_t contact, bool touch) {
       mechanics.approach(time_, state_.motion, contacts()[1 - contact]) <= kOnTouch)
     contact_changes(1 - contact, false);
   if (events_.size() >= kMaxEvents)
-    fail("after " + std::to_string(kMaxEvents) + " touches of the " +
-         (wall ? "pistons" : "teeth"));
+    fail("after " + std::to_string(kMaxEvents) + " touches of the " + (wall ? "pistons" : "teeth"));
   close_contact(of);
   of.now = touch;
   ToothEvent event;

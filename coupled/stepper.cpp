@@ -88,8 +88,8 @@ class Stepper::Implementation {
     if (const auto angle = course_.passed_edge())
       events_.push_back({Kind::edge, course_.time(), *angle});
     for (const ToothEvent& event : course_.events())
-      events_.push_back({event.touch ? Kind::touch : Kind::release, event.time_s, 0, event.flank,
-                         event.piston});
+      events_.push_back(
+          {event.touch ? Kind::touch : Kind::release, event.time_s, 0, event.flank, event.piston});
   }
 
   Mechanics& mechanics_;

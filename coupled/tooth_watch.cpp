@@ -141,8 +141,8 @@ class ToothWatch::Watcher {
   HybridIntegrator course_;
   SystemState state_;
   OilLoads loads_;
-  std::size_t seen_ = 0;                // events
-  std::vector<Touching> touching_;      // by contact
+  std::size_t seen_ = 0;            // events
+  std::vector<Touching> touching_;  // by contact
   double since_ = 0;
   std::array<double, 3> times_{}, forces_{};  // of the contact's last steps
   int known_ = 0;

@@ -19,8 +19,8 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/comparison.h"
 #include "bentaxis/study/comparison_document.h"
-#include "bentaxis/study/pump_picture.h"
 #include "bentaxis/study/plausibility_section.h"
+#include "bentaxis/study/pump_picture.h"
 #include "bentaxis/study/simulation.h"
 #include "bentaxis/study/simulation_document.h"
 #include "support.h"
@@ -224,12 +224,12 @@ void expect_theory(const Reader& scene, const Case& the_case,
         const Theory of(p.geometry, theta, psi, k);
         near(force("Rw_" + n), in_s2(value("Rw_" + n + "_x2_N"), value("Rw_" + n + "_y2_N"), 0),
              table.peak("Rw"), "Rw");
-        near(at("Rw_" + n),
-             of.a + p.transfer.wall->from_joint / size * (of.b - of.a), size, "D" + n);
+        near(at("Rw_" + n), of.a + p.transfer.wall->from_joint / size * (of.b - of.a), size,
+             "D" + n);
       }
     if (p.transfer.kind == TransferKind::gear && p.gear.contact == ToothContact::rigid &&
-        p.gear.flanks == Flanks::one &&
-        the_case.analytic.gear == BlockDrive::mesh && table.peak("Rcs") > 0) {
+        p.gear.flanks == Flanks::one && the_case.analytic.gear == BlockDrive::mesh &&
+        table.peak("Rcs") > 0) {
       const double half = p.geometry.tilt / 2, sign = the_case.operation.speed_rpm < 0 ? -1 : 1;
       const double across = std::sin(p.gear.pressure_angle);
       const Vector3d k4 = sign * Vector3d(-std::cos(p.gear.pressure_angle), across * std::sin(half),
@@ -310,9 +310,8 @@ void expect_scene_of(Case the_case) {
 }
 
 TEST(PumpScene, StandsAndActsAsInTheTables) {
-  for (const char* name :
-       {"bap63_rated", "bap63_as_compared_in_the_paper", "bap63_teeth", "bap63_constant_velocity",
-        "bap63_cardan", "bap63_tapered_pistons"})
+  for (const char* name : {"bap63_rated", "bap63_as_compared_in_the_paper", "bap63_teeth",
+                           "bap63_constant_velocity", "bap63_cardan", "bap63_tapered_pistons"})
     expect_scene_of(shipped_case(name));
   for (const std::string& name : reference_cases()) expect_scene_of(reference_case(name));
 }
@@ -556,17 +555,15 @@ TEST(PumpScene, ShowsTheTransferOfThePump) {
     ASSERT_TRUE(scene);
     EXPECT_NE(scene->note.find(words), std::string::npos) << scene->note;
     EXPECT_EQ(scene->note.find("gear") != std::string::npos, gear);
-    const bool has_s4 =
-        std::any_of(scene->frames.begin(), scene->frames.end(),
-                    [](const auto& frame) { return frame.first == "S4"; });
+    const bool has_s4 = std::any_of(scene->frames.begin(), scene->frames.end(),
+                                    [](const auto& frame) { return frame.first == "S4"; });
     EXPECT_EQ(has_s4, gear);
     const std::string picture = study::pump_picture(the_case);
     EXPECT_EQ(picture.find("pitch circle") != std::string::npos, gear);
     EXPECT_EQ(picture.find("O4") != std::string::npos, gear);
     EXPECT_EQ(picture.find(">D<") != std::string::npos,
               std::string(name) == "bap63_tapered_pistons");
-    EXPECT_EQ(picture.find("joint at O2") != std::string::npos,
-              the_case.pump.transfer.is_joint());
+    EXPECT_EQ(picture.find("joint at O2") != std::string::npos, the_case.pump.transfer.is_joint());
   }
 }
 

@@ -57,9 +57,8 @@ Trajectory prescribed(const Case& the_case, double tolerance, bool multibody = f
   const PressureTrace pressure(the_case.pressure);
   const auto oil =
       coupled::prescribed_oil(the_case.pump.geometry.pistons, pressure, the_case.pressure.ports);
-  return coupled::simulate(multibody ? "multibody" : "analytic",
-                           *mechanics_of(the_case, multibody), *oil, *the_case.drive,
-                           within(tolerance));
+  return coupled::simulate(multibody ? "multibody" : "analytic", *mechanics_of(the_case, multibody),
+                           *oil, *the_case.drive, within(tolerance));
 }
 
 Trajectory with_oil(const Case& the_case, double tolerance, bool multibody) {
@@ -143,7 +142,8 @@ TEST(WallMechanics, BothModelsAgreeAtRandomStates) {
       EXPECT_NEAR(x, b->approach(at.time, at.y, piston), 1e-14);
       EXPECT_NEAR(rate, b->approach_rate(at.time, at.y, piston), 1e-12);
       if (x <= 0) continue;
-      const double force = law.stiffness * kWallApproach * std::pow(x / kWallApproach, law.exponent) *
+      const double force = law.stiffness * kWallApproach *
+                           std::pow(x / kWallApproach, law.exponent) *
                            std::max(0.0, 1 + law.dissipation * rate);
       sum += force;
       wall = std::max(wall, force);
@@ -153,7 +153,8 @@ TEST(WallMechanics, BothModelsAgreeAtRandomStates) {
     several += count > 1;
     apart += count == 0;
     const double torque = at.torque() + wall * at.the_case.pump.geometry.joint_circle_radius;
-    const double round_off = 1e-14 * law.stiffness * std::pow(wall / law.stiffness / 1e-6 + 1, 0.5) *
+    const double round_off = 1e-14 * law.stiffness *
+                             std::pow(wall / law.stiffness / 1e-6 + 1, 0.5) *
                              at.the_case.pump.geometry.joint_circle_radius * 10;
     MotionVector by_a, by_b;
     a->rates(at.time, at.y, at.loads, by_a);

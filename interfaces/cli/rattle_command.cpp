@@ -99,7 +99,8 @@ int rattle(const Options& options) {
 Command add_rattle_command(CommandParser program) {
   auto options = std::make_shared<Options>();
   CommandParser command = program.subcommand(
-      "rattle", "Map of gear or piston contact: loaded, reversing, out of contact, impacts on both sides");
+      "rattle",
+      "Map of gear or piston contact: loaded, reversing, out of contact, impacts on both sides");
   add_case(command, options->the_case);
   add_report(command, options->place, "report.html, report.json and rattle.csv");
   add_values(command, "--speeds", options->speeds, "shaft speeds, rpm").required();

@@ -51,8 +51,7 @@ BoreWalls::BoreWalls(SimTK::GeneralForceSubsystem& forces, const PumpParameters&
     : law_(*pump.transfer.wall),
       bore_radius_(pump.geometry.bore_diameter / 2),
       sphere_radius_(bore_radius_ - law_.clearance),
-      arm_(pump.geometry.bore_circle_radius *
-           (1 - law_.from_joint / pump.geometry.piston_length)),
+      arm_(pump.geometry.bore_circle_radius * (1 - law_.from_joint / pump.geometry.piston_length)),
       block_(bodies.block),
       pistons_(bodies.pistons),
       bore_points_(pistons.bore_points),

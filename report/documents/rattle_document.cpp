@@ -235,9 +235,10 @@ report::Section boundary_section(const RattleMap& map) {
           "at which the smallest force passes 0, beside the speed half way between those where the "
           "upward sweep ceases or begins to carry: " +
           agreement_text(agreement) + "." +
-          (by_pistons(map) ? " In the free play pistons under pressure push the block away from the "
-                             "middle, which the criterion does not have."
-                           : ""),
+          (by_pistons(map)
+               ? " In the free play pistons under pressure push the block away from the "
+                 "middle, which the criterion does not have."
+               : ""),
       {},
       {{"delivery pressure, bar", "criterion, rpm", "simulated, rpm", "difference, rpm"}, {}}};
   for (const auto& place : agreement.places)
@@ -371,26 +372,24 @@ class MapFigures {
 std::vector<report::Figure> map_figures(const RattleMap& map) {
   const MapFigures make(map);
   const Words& of = words(map);
-  std::vector<report::Figure> figures = {
-      make.classes("classes", fmt::format("Contact of the {}, speed swept up", of.contacts),
-                   &RattleRow::up)};
+  std::vector<report::Figure> figures = {make.classes(
+      "classes", fmt::format("Contact of the {}, speed swept up", of.contacts), &RattleRow::up)};
   figures.front().note = fmt::format(
       "One rectangle per point. The line is where the smallest force of {} over the turn passes 0.",
       of.criterion);
   if (!rigid(map)) {
-    figures.push_back(
-        make.classes("classes_down", fmt::format("Contact of the {}, speed swept down", of.contacts),
-                     &RattleRow::down));
+    figures.push_back(make.classes("classes_down",
+                                   fmt::format("Contact of the {}, speed swept down", of.contacts),
+                                   &RattleRow::down));
     figures.push_back(make.linear("apart", "Share of the time without contact, swept up",
                                   {"share of the time", "%"},
                                   [](const RattlePoint& p) { return 100 * p.apart; }));
     figures.push_back(make.linear("impacts", "Impacts per turn, swept up", {"impacts per turn"},
                                   [](const RattlePoint& p) { return p.impacts; }));
   }
-  figures.push_back(make.figure("over_mean",
-                                fmt::format("Largest {} over the mean, swept up", of.force),
-                                {"largest over mean"}, &RattleRow::up,
-                                [](const RattlePoint& p) { return p.over_mean(); }));
+  figures.push_back(make.figure(
+      "over_mean", fmt::format("Largest {} over the mean, swept up", of.force),
+      {"largest over mean"}, &RattleRow::up, [](const RattlePoint& p) { return p.over_mean(); }));
   figures.push_back(make.figure("largest", fmt::format("Largest {}, swept up", of.force),
                                 {"force", "N"}, &RattleRow::up,
                                 [](const RattlePoint& p) { return p.largest; }));
@@ -403,8 +402,8 @@ report::Document rattle_document(const RattleMap& map, const report::Lines& prog
                                  const CaseDescription& description) {
   report::Document document =
       case_document(description,
-                    map.the_case.name +
-                        (by_pistons(map) ? ": where the block rattles" : ": where the gear rattles"),
+                    map.the_case.name + (by_pistons(map) ? ": where the block rattles"
+                                                         : ": where the gear rattles"),
                     program);
   document.verdict = report::Verdict{map.agrees(), headline(map)};
   document.verdict->answers = answers_of(map);
@@ -412,13 +411,13 @@ report::Document rattle_document(const RattleMap& map, const report::Lines& prog
     document.verdict->agrees.reset();
     document.verdict->word = "Map";
   }
-  document.meaning =
-      fmt::format("Contact of the {} by the closed form; a class is that of the observed turns, with "
-                  "the thresholds below. {}",
-                  words(map).contacts,
-                  map.checks.empty()
-                      ? "Nothing was compared: --check-points N recomputes points by Simbody."
-                      : "Simbody's model, from the same states, verifies the equations of motion.");
+  document.meaning = fmt::format(
+      "Contact of the {} by the closed form; a class is that of the observed turns, with "
+      "the thresholds below. {}",
+      words(map).contacts,
+      map.checks.empty()
+          ? "Nothing was compared: --check-points N recomputes points by Simbody."
+          : "Simbody's model, from the same states, verifies the equations of motion.");
   document.runs.emplace();
   document.runs->push_back(settings_section(map));
   document.runs->push_back(classes_section(map));

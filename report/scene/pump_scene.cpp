@@ -118,7 +118,7 @@ class SceneMaker {
   report::SceneLoad described(const BodyLoad& load);
   Place place_of(const BodyLoad& load, const SceneRun& run, std::size_t index);
   Terms force_of(const BodyLoad& load, const SceneRun& run, std::size_t index, double sign);
-  Terms moment_of(const BodyLoad& load, const SceneRun& run, std::size_t index);
+  Terms moment_of(const BodyLoad& load, const SceneRun& run, std::size_t index, double sign);
   std::optional<Terms> by_channels(const std::string& symbol, int piston, double sign) const;
   std::optional<Terms> by_one_channel(std::size_t column, const report::Values* parts,
                                       const SceneRun& run) const;
@@ -325,9 +325,10 @@ Terms SceneMaker::force_of(const BodyLoad& load, const SceneRun& run, std::size_
   return by_series(parts);
 }
 
-Terms SceneMaker::moment_of(const BodyLoad& load, const SceneRun& run, std::size_t index) {
+Terms SceneMaker::moment_of(const BodyLoad& load, const SceneRun& run, std::size_t index,
+                            double sign) {
   if (load.kind == ForceKind::reaction)
-    if (auto terms = by_channels(load.symbol, 0, 1)) return *terms;
+    if (auto terms = by_channels(load.symbol, 0, sign)) return *terms;
   std::array<report::Values, 3> parts;
   for (std::size_t row = 0; row < scene_.rows; ++row)
     for (int i = 0; i < 3; ++i) parts[i].push_back(run.loads.at(row, index).moment[i]);
@@ -412,7 +413,7 @@ void SceneMaker::add_loads() {
       }
       shown.at.push_back(place_of(load, run, index));
       shown.force.push_back(force_of(load, run, index, shown.counterpart ? -1 : 1));
-      shown.moment.push_back(moment_of(load, run, index));
+      shown.moment.push_back(moment_of(load, run, index, shown.counterpart ? -1 : 1));
     }
     // What is nothing at all rows of all models is no load.
     if (!forces && !moments) continue;

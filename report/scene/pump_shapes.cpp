@@ -342,9 +342,9 @@ void Shapes::transfer() {
     case TransferKind::pistons:
       break;
   }
-  shapes_.piston.push_back(
-      {report::Ball{{0, 0, p_.transfer.wall->from_joint}, o_.bore / 2 - p_.transfer.wall->clearance},
-       Look::gear});
+  shapes_.piston.push_back({report::Ball{{0, 0, p_.transfer.wall->from_joint},
+                                         o_.bore / 2 - p_.transfer.wall->clearance},
+                            Look::gear});
   shapes_.note += "; green on each piston: the sphere that touches the wall of its bore";
 }
 
