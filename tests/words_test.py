@@ -517,7 +517,7 @@ class OptionNamesTest(WordsTest):
         hydraulic = REPO / "cases" / "bap63_rated_hydraulic.toml"
         few = ["--set", "operation.samples_per_revolution=36"]
         for arguments, former, name in (
-            (["sensitivity", self.case, *few, "--output", "mean:Td", "--parameter", "pump.tilt_deg"], "--parameter", "--vary"),
+            (["sensitivity", self.case, *few, "--output", "mean:Td", "--parameter", "pump.tilt_deg", "--parameter", "piston.mass_kg"], "--parameter", "--vary"),
             (["sensitivity", self.case, *few, "--output=mean:Td", "--parameter=pump.tilt_deg"], "--parameter", "--vary"),
             (["reference", "golden", self.case, "--samples", "36", "--out", "golden"], "--samples", "--angles"),
             (["fmu", self.case, "--tolerance", "1e-8", "--out", "pump.fmu"], "--tolerance", "--accuracy"),

@@ -319,12 +319,13 @@ ProgramParser::~ProgramParser() = default;
 
 // The argument by the option's present name. Says on standard error that it has one.
 std::string ProgramParser::with_new_names(const std::string& command,
-                                          const std::string& argument) const {
+                                          const std::string& argument) {
   const std::size_t end = std::min(argument.find('='), argument.size());
   const auto found = renamed_.find({command, argument.substr(0, end)});
   if (found == renamed_.end()) return argument;
-  std::fprintf(stderr, "bentaxis: %s: %s is now called %s; the former name goes on working\n",
-               command.c_str(), found->first.second.c_str(), found->second.c_str());
+  if (told_.insert(found->first.second).second)
+    std::fprintf(stderr, "bentaxis: %s: %s is now called %s; the former name goes on working\n",
+                 command.c_str(), found->first.second.c_str(), found->second.c_str());
   return found->second + argument.substr(end);
 }
 

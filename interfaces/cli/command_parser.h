@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -155,11 +156,12 @@ class ProgramParser {
   bool parse(int argc, char** argv);
 
  private:
-  std::string with_new_names(const std::string& command, const std::string& argument) const;
+  std::string with_new_names(const std::string& command, const std::string& argument);
 
   std::unique_ptr<CLI::App> app_;
   std::shared_ptr<OptionWords> words_ = std::make_shared<OptionWords>();
   std::map<std::pair<std::string, std::string>, std::string> renamed_;
+  std::set<std::string> told_;  // former names that were given
 };
 
 }  // namespace bentaxis::cli
