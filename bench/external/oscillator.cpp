@@ -8,9 +8,9 @@
 #include "bentaxis/coupled/prescribed_oil.h"
 #include "bentaxis/coupled/simulation.h"
 #include "bentaxis/pump/units.h"
-#include "rows.h"
+#include "numbers.h"
 
-namespace bentaxis::judges {
+namespace bentaxis::external {
 namespace {
 
 /// x'' + 2 damping x' + f(x) = mean + swing W^2 sin(W t), f the dead band between -1 and 1.
@@ -334,11 +334,11 @@ int class_of(double least, double greatest) {
 
 std::string at_text(double frequency) {
   char text[32];
-  std::snprintf(text, sizeof text, "W = %.2f: ", frequency);
+  std::snprintf(text, sizeof text, "oscillator.W_%.1f.", frequency);
   return text;
 }
 
-void judge_waveform(const Integrated& integrated, Rows& rows) {
+void compare_waveform(const Integrated& integrated, Numbers& numbers) {
   constexpr int kPeriods = 20, kSamples = 2000;
   for (const double frequency : {0.5, 0.8, 1.2}) {
     Equation of;
@@ -356,20 +356,21 @@ void judge_waveform(const Integrated& integrated, Rows& rows) {
     });
     if (next + 1 < found.lag.size()) worst = HUGE_VAL;  // it did not come to the end
     const std::string where = at_text(frequency);
-    rows.push_back({where + "waveform over 20 periods", worst, 0, 1e-7, false});
+    numbers.push_back({where + "waveform", worst});
     // The start at x = 1 is a touch for one and none for the other: from the first moment on.
     std::vector<Corner> events;
     for (const ToothEvent& event : found.record.events)
       if (event.time_s > 0) events.push_back({event.time_s, event.touch, event.flank});
-    rows.push_back({where + "touches and leavings", static_cast<double>(events.size()),
-                    static_cast<double>(seen.corners.size()), 0, false});
+    numbers.push_back(
+        {where + "events_missed",
+         std::abs(static_cast<double>(events.size()) - static_cast<double>(seen.corners.size()))});
     double apart = events.size() == seen.corners.size() ? 0 : HUGE_VAL;
     for (std::size_t i = 0; i < std::min(events.size(), seen.corners.size()); ++i) {
       apart = std::max(apart, std::abs(events[i].time - seen.corners[i].time));
       if (events[i].touch != seen.corners[i].touch || events[i].flank != seen.corners[i].flank)
         apart = HUGE_VAL;
     }
-    rows.push_back({where + "their times, periods", apart / of.period(), 0, 1e-6, false});
+    numbers.push_back({where + "event_times", apart / of.period()});
   }
 }
 
@@ -393,7 +394,7 @@ Branch follow(const std::vector<double>& frequencies, const Run& run) {
   return branch;
 }
 
-void judge_branches(const Integrated& integrated, Rows& rows) {
+void compare_branches(const Integrated& integrated, Numbers& numbers) {
   std::vector<double> up;
   for (int i = 0; i <= 16; ++i) up.push_back(0.40 + 0.05 * i);
   const std::vector<double> down(up.rbegin(), up.rend());
@@ -432,10 +433,9 @@ void judge_branches(const Integrated& integrated, Rows& rows) {
           class_of(found[way].least[i], found[way].greatest[i]))
         ++same;
     }
-    const std::string name = way == 0 ? "branch up, 17 frequencies: " : "branch down: ";
-    rows.push_back({name + "extremes of x", worst, 0, 1e-6, false});
-    rows.push_back(
-        {name + "same class", static_cast<double>(same), static_cast<double>(up.size()), 0, false});
+    const std::string name = way == 0 ? "oscillator.up." : "oscillator.down.";
+    numbers.push_back({name + "extremes", worst});
+    numbers.push_back({name + "same_class", static_cast<double>(same)});
   }
   int apart = 0, apart_found = 0;
   constexpr double kOtherBranch = 1e-3;
@@ -444,12 +444,12 @@ void judge_branches(const Integrated& integrated, Rows& rows) {
     if (std::abs(exact[0].greatest[i] - exact[1].greatest[j]) > kOtherBranch) ++apart;
     if (std::abs(found[0].greatest[i] - found[1].greatest[j]) > kOtherBranch) ++apart_found;
   }
-  rows.push_back({"frequencies with two branches", static_cast<double>(apart_found),
-                  static_cast<double>(apart), 0, false});
-  rows.push_back({"there are such", apart > 0 ? 1.0 : 0.0, 1, 0, false});
+  // Without a second branch the sweep would show nothing.
+  numbers.push_back(
+      {"oscillator.second_branch_missed", apart > 0 ? std::abs(apart_found - apart) : HUGE_VAL});
 }
 
-void judge_steady(const Integrated& integrated, Rows& rows) {
+void compare_steady(const Integrated& integrated, Numbers& numbers) {
   for (const double frequency : {0.5, 0.8, 1.2}) {
     Equation of;
     of.frequency = frequency;
@@ -461,22 +461,23 @@ void judge_steady(const Integrated& integrated, Rows& rows) {
     const double worst = std::max(std::abs(found.motion[kLag] - exact.state.x),
                                   std::abs(found.motion[kLagRate] - exact.state.v));
     const std::string where = at_text(frequency);
-    rows.push_back({where + "periodic motion", worst, 0, 1e-8, false});
-    rows.push_back({where + "largest multiplier",
-                    found.multipliers.empty() ? HUGE_VAL : std::abs(found.multipliers.front()),
-                    exact.largest_multiplier, 1e-5, false});
+    numbers.push_back({where + "periodic", worst});
+    numbers.push_back({where + "multiplier",
+                       found.multipliers.empty()
+                           ? HUGE_VAL
+                           : std::abs(found.multipliers.front()) / exact.largest_multiplier - 1});
   }
 }
 
 }  // namespace
 
-Rows oscillator() {
+Numbers oscillator() {
   const Integrated integrated;
-  Rows rows;
-  judge_waveform(integrated, rows);
-  judge_branches(integrated, rows);
-  judge_steady(integrated, rows);
-  return rows;
+  Numbers numbers;
+  compare_waveform(integrated, numbers);
+  compare_branches(integrated, numbers);
+  compare_steady(integrated, numbers);
+  return numbers;
 }
 
-}  // namespace bentaxis::judges
+}  // namespace bentaxis::external

@@ -5,9 +5,9 @@
 
 #include "bentaxis/pump/tooth_flexibility.h"
 #include "bentaxis/pump/units.h"
-#include "rows.h"
+#include "numbers.h"
 
-namespace bentaxis::judges {
+namespace bentaxis::external {
 namespace {
 
 // ---- ISO 6336-1:2019, 9.2, method B: N, mm, um, degrees -----------------------------------------
@@ -164,7 +164,7 @@ class TheirMesh {
 
 }  // namespace
 
-Rows iso_6336() {
+Numbers iso_6336() {
   Wheels example;
   example.module = 8;
   example.helix_deg = 15.8;
@@ -174,11 +174,10 @@ Rows iso_6336() {
   example.rack_dedendum = 1.4;
   example.distance = 500;
   const Stiffness c = by_standard(example);
-  constexpr double kDigits = 1e-6, kFit = 0.15;
-  Rows rows = {{"c'th", c.theoretical, 17.85584, kDigits},
-               {"c'", c.single, 12.37047, kDigits},
-               {"c_gamma_alpha", c.mesh_alpha, 17.46485, kDigits},
-               {"c_gamma_beta", c.mesh_beta, 14.84512, kDigits}};
+  Numbers numbers = {{"iso6336.cth", c.theoretical},
+                     {"iso6336.c", c.single},
+                     {"iso6336.c_gamma_alpha", c.mesh_alpha},
+                     {"iso6336.c_gamma_beta", c.mesh_beta}};
   constexpr double kPerMillimetreMicrometre = 1e-9;  // of N/m2
   for (const int teeth : {20, 27, 40, 79, 120}) {
     Wheels wheels;
@@ -186,56 +185,48 @@ Rows iso_6336() {
     wheels.teeth[0] = wheels.teeth[1] = teeth;
     const Stiffness standard = by_standard(wheels);
     const Mesh mesh(spur(teeth, 4e-3, 3));
-    const std::string of = ", spur, " + std::to_string(teeth) + "/" + std::to_string(teeth) +
-                           ": the law, the standard";
-    const bool known = teeth == 120;
-    rows.push_back({"c'" + of, mesh.at_pitch_point() * kPerMillimetreMicrometre, standard.single,
-                    kFit, true, known});
-    rows.push_back({"c_gamma_alpha" + of, mesh.mean() * kPerMillimetreMicrometre,
-                    standard.mesh_alpha, kFit, true, known});
+    const std::string spur_pair = "iso6336.law_over_standard." + std::to_string(teeth);
+    numbers.push_back(
+        {spur_pair + ".c", mesh.at_pitch_point() * kPerMillimetreMicrometre / standard.single});
+    numbers.push_back({spur_pair + ".c_gamma_alpha",
+                       mesh.mean() * kPerMillimetreMicrometre / standard.mesh_alpha});
   }
-  return rows;
+  return numbers;
 }
 
-Rows pair_of_62() {
+Numbers pair_of_62() {
   constexpr double kWidth = 0.02, kModule = 2e-3, kBore = 17.5e-3;
   const Gear gear = spur(62, kModule, (31 - 1.25) * kModule / kBore);
   const Mesh mesh(gear);
   const TheirMesh theirs(mesh, gear);
   constexpr int kPlaces = 1000;
-  double mean = 0;
-  for (int i = 0; i < kPlaces; ++i) mean += theirs.mesh(i / (kPlaces - 1.0)) / kPlaces;
-  double most = 0;
-  for (int i = 0; i < kPlaces; ++i) most = std::max(most, theirs.mesh(i / (kPlaces - 1.0)));
-  constexpr double kStart = 3.966229e8, kMean = 4.096607e8;
-  return {{"contact ratio", mesh.contact_ratio(), 1.7897799, 1e-7},
-          {"Hertz", kWidth / mesh.law().contact(), 3.5558686e9, 1e-7},
-          {"start of mesh, its conventions", kWidth * theirs.mesh(0), kStart, 1e-6},
-          {"largest, its conventions", kWidth * most, 419569438.98401976, 1e-6},
-          {"mean, its conventions", kWidth * mean, kMean, 1e-3, true, true},
-          {"start of mesh, ours", kWidth * mesh.mesh(0), kStart, 0.05},
-          {"mean, ours", kWidth * mesh.mean(), kMean, 0.05}};
-}
-
-Rows finite_element_tooth() {
-  struct Stored {
-    int teeth;
-    double height, deflection;  // modules; m per N/m
-  };
-  // Of bench/judges/finite_element_tooth.py 0.03.
-  const Stored stored[] = {{27, -0.5, 2.671684e-11}, {27, 0, 3.484053e-11},
-                           {27, 0.9, 6.910369e-11},  {79, -0.5, 2.619950e-11},
-                           {79, 0, 3.421526e-11},    {79, 0.9, 6.836431e-11}};
-  constexpr double kModule = 4e-3;
-  Rows rows;
-  for (const Stored& s : stored) {
-    const ToothFlexibility law(spur(s.teeth, kModule, 3), 0);
-    char what[64];
-    std::snprintf(what, sizeof what, "%d teeth, load at %+.1f modules: deflection", s.teeth,
-                  s.height);
-    rows.push_back({what, law.tooth(s.height * kModule), s.deflection, 0.15});
+  double mean = 0, most = 0;
+  for (int i = 0; i < kPlaces; ++i) {
+    const double here = theirs.mesh(i / (kPlaces - 1.0));
+    mean += here / kPlaces;
+    most = std::max(most, here);
   }
-  return rows;
+  return {{"pair62.contact_ratio", mesh.contact_ratio()},
+          {"pair62.hertz", kWidth / mesh.law().contact()},
+          {"pair62.start.their_conventions", kWidth * theirs.mesh(0)},
+          {"pair62.largest.their_conventions", kWidth * most},
+          {"pair62.mean.their_conventions", kWidth * mean},
+          {"pair62.start.ours", kWidth * mesh.mesh(0)},
+          {"pair62.mean.ours", kWidth * mesh.mean()}};
 }
 
-}  // namespace bentaxis::judges
+Numbers finite_element_tooth() {
+  constexpr double kModule = 4e-3;
+  Numbers numbers;
+  for (const int teeth : {27, 79}) {
+    const ToothFlexibility law(spur(teeth, kModule, 3), 0);
+    for (const double height : {-0.5, 0.0, 0.9}) {
+      char id[64];
+      std::snprintf(id, sizeof id, "tooth.%d.at_%.1f_modules", teeth, height);
+      numbers.push_back({id, law.tooth(height * kModule)});
+    }
+  }
+  return numbers;
+}
+
+}  // namespace bentaxis::external
