@@ -1,5 +1,7 @@
-// Computes what strangers have numbers for and prints it: "id,value", a line each. What they say is
-// in reference_data/external/expected.json, which scripts/run_external_benchmarks reads afterwards.
+// Computes what strangers have numbers for and prints it: "id,value", a line each; an id with
+// several values has a line for each. What they say is in expected.json beside this file, which
+// scripts/run_external_benchmarks reads afterwards.
+#include <chrono>
 #include <cstdio>
 #include <exception>
 
@@ -7,12 +9,29 @@
 
 int main() {
   using namespace bentaxis::external;
-  try {
-    for (const auto group : {iso_6336, pair_of_62, finite_element_tooth, oscillator, oil})
-      for (const Number& n : group()) std::printf("%s,%.17g\n", n.id.c_str(), n.value);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "external_numbers: %s\n", error.what());
-    return 1;
-  }
+  struct Group {
+    const char* name;
+    Numbers (*numbers)();
+  };
+  const Group groups[] = {{"iso_6336", iso_6336},
+                          {"pair_of_62", pair_of_62},
+                          {"finite_element_tooth", finite_element_tooth},
+                          {"oscillator", oscillator},
+                          {"oil", oil},
+                          {"regression", regression},
+                          {"sobol", sobol},
+                          {"gum_supplement", gum_supplement},
+                          {"posterior", posterior},
+                          {"stiff", stiff}};
+  int status = 0;
+  for (const Group& group : groups) try {
+      const auto start = std::chrono::steady_clock::now();
+      for (const Number& n : group.numbers()) std::printf("%s,%.17g\n", n.id.c_str(), n.value);
+      const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+      std::fprintf(stderr, "%s: %.1f s\n", group.name, spent.count());
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "%s: %s\n", group.name, error.what());
+      status = 1;
+    }
+  return status;
 }

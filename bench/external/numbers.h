@@ -18,5 +18,10 @@ Numbers pair_of_62();            ///< m 2 mm, 62/62 after Ma et al. 2014
 Numbers finite_element_tooth();  ///< as finite_element_tooth.py computed it once
 Numbers oscillator();            ///< with backlash, by matching pieces, against coupled/
 Numbers oil();                   ///< its viscosity
+Numbers regression();            ///< NIST's nonlinear regressions
+Numbers sobol();                 ///< functions whose variance is known part by part
+Numbers gum_supplement();        ///< JCGM 101:2008, 9.2 to 9.4
+Numbers posterior();             ///< the sampler of identification
+Numbers stiff();                 ///< Test Set for IVP Solvers
 
 }  // namespace bentaxis::external

@@ -15,6 +15,7 @@
 #include "bentaxis/designs/distribution.h"
 #include "bentaxis/designs/least_squares.h"
 #include "bentaxis/designs/output.h"
+#include "bentaxis/designs/posterior.h"
 #include "bentaxis/designs/variable.h"
 #include "bentaxis/results/result_table.h"
 #include "bentaxis/study/progress.h"
@@ -211,13 +212,8 @@ struct Profile {
 };
 
 /// Draws from the posterior: bounds, priors and data together.
-struct Posterior {
-  std::size_t count = 0;
-  std::vector<double> unknowns;  ///< count x unknowns
-  std::vector<double> numbers;   ///< count x DataModel::numbers()
-  double accepted = 0;           ///< share of the moves
-  double effective = 0;          ///< independent draws that they are worth, of the worst unknown
-  std::vector<double> rhat;      ///< by unknown: two halves of the chain against each other
+struct Posterior : Draws {
+  std::vector<double> numbers;  ///< count x DataModel::numbers()
 };
 
 /// A reaction over the turn.
