@@ -16,6 +16,7 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/study/ball_bearing.h"
 #include "bentaxis/study/run.h"
 
 namespace bentaxis::study {
@@ -86,6 +87,76 @@ TEST(WorkedExample, NskTaperedBearingsBackToBack) {
 // roller bearing that is to last 1440 million revolutions under 1.4 x 1650 lbf = 10.279 kN.
 TEST(WorkedExample, ShigleyStraightRoller) {
   EXPECT_NEAR(rating_life(91.1, 10.279), 1440, 1440 * 10.0 / 3 * 0.05 / 91.1);
+}
+
+// docs/external_benchmarks.md compares it with results of others.
+BallBearing deep_groove() {
+  BallBearing b;
+  b.balls = 7;
+  b.ball_diameter = 0.0115;
+  b.pitch_diameter = 0.0435;
+  b.dynamic_rating = 23400;
+  return b;
+}
+
+TEST(BallBearing, RadialLoadsScaleWithoutClearance) {
+  const BallBearingState one = equilibrium(deep_groove(), {.radial = 500});
+  const BallBearingState two = equilibrium(deep_groove(), {.radial = 1000});
+  // No contact angle: the balls' loads are in proportion, the life goes with the cube.
+  EXPECT_NEAR(one.reference_life / two.reference_life, 8, 1e-8);
+  EXPECT_NEAR(two.radial / one.radial, std::pow(2.0, 2.0 / 3), 1e-9);
+  double sum = 0;
+  for (int ball = 0; ball < 7; ++ball) {
+    EXPECT_NEAR(two.ball_loads[ball], 2 * one.ball_loads[ball], 1e-6);
+    sum += two.ball_loads[ball] * std::cos(2 * M_PI * ball / 7);
+  }
+  EXPECT_NEAR(sum, 1000, 1e-6);
+  EXPECT_NEAR(two.axial, 0, 1e-12);
+  EXPECT_NEAR(two.tilt, 0, 1e-10);
+}
+
+TEST(BallBearing, AnAxialLoadIsSharedEquallyInEitherDirection) {
+  BallBearing b = deep_groove();
+  b.radial_clearance = 10e-6;
+  const BallBearingState there = equilibrium(b, {.axial = 1000});
+  const BallBearingState back = equilibrium(b, {.axial = -1000});
+  for (const double load : there.ball_loads) EXPECT_NEAR(load, there.ball_loads[0], 1e-6);
+  EXPECT_NEAR(there.axial, -back.axial, 1e-12);
+  EXPECT_NEAR(there.reference_life, back.reference_life, 1e-6);
+  EXPECT_GT(there.ball_loads[0], 1000.0 / 7);  // at a contact angle
+}
+
+TEST(BallBearing, ABallFurtherIsTheSameBearing) {
+  const BallBearingLoad load{.radial = 800, .axial = 300, .moment = 2};
+  BallBearingLoad turned = load;
+  turned.first_ball = 2 * M_PI / 7;
+  const BallBearingState one = equilibrium(deep_groove(), load);
+  const BallBearingState two = equilibrium(deep_groove(), turned);
+  EXPECT_NEAR(two.reference_life / one.reference_life, 1, 1e-8);
+  EXPECT_NEAR(two.ball_loads[0], one.ball_loads[1], 1e-5);
+}
+
+TEST(BallBearing, RefusesWhatIsNone) {
+  const auto why = [](BallBearing b, const BallBearingLoad& load) {
+    try {
+      equilibrium(b, load);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  BallBearing b = deep_groove();
+  EXPECT_THAT(why(b, {}), testing::HasSubstr("needs a load"));
+  EXPECT_THAT(why(b, {.radial = -1}), testing::HasSubstr(">= 0"));
+  EXPECT_THAT(why(b, {.radial = NAN}), testing::HasSubstr("finite"));
+  b.balls = 2;
+  EXPECT_THAT(why(b, {.radial = 1}), testing::HasSubstr("balls must be 3 or more"));
+  b = deep_groove();
+  b.pitch_diameter = 0.01;
+  EXPECT_THAT(why(b, {.radial = 1}), testing::HasSubstr("pitch_diameter"));
+  b = deep_groove();
+  b.inner_groove_ratio = 0.5;
+  EXPECT_THAT(why(b, {.radial = 1}), testing::HasSubstr("(0.5, 1]"));
 }
 
 // ISO 281 and ISO 76 make e, Y and Y0 of one angle. FAG 31310: Y 0.73, e 0.83, Y0 0.4.

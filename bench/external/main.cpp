@@ -22,7 +22,8 @@ int main() {
                           {"sobol", sobol},
                           {"gum_supplement", gum_supplement},
                           {"posterior", posterior},
-                          {"stiff", stiff}};
+                          {"stiff", stiff},
+                          {"bearings", bearings}};
   int status = 0;
   for (const Group& group : groups) try {
       const auto start = std::chrono::steady_clock::now();

@@ -39,8 +39,9 @@ void put_indices(Numbers& numbers, const std::string& name, const Function& func
   }
 }
 
-// First-order uncertainty, then mean, standard deviation and 95 % of a million trials. Where the law
-// is not symmetric the supplement prints the shortest interval, which the program does not have.
+// First-order uncertainty, then mean, standard deviation and 95 % of a million trials. Where the
+// law is not symmetric the supplement prints the shortest interval, which the program does not
+// have.
 void put_propagation(Numbers& numbers, const std::string& name, const Function& function,
                      const std::vector<std::string>& distributions, bool symmetric = true) {
   constexpr std::size_t kTrials = 1000000;

@@ -167,8 +167,8 @@ double mean_load(std::span<const double> loads, std::span<const double> shares) 
   return largest * std::pow(sum / all, 1 / kLifeExponent);
 }
 
-double rating_life(double dynamic_rating, double load) {
-  return load > 0 ? finite_or_none(std::pow(dynamic_rating / load, kLifeExponent)) : not_computed();
+double rating_life(double dynamic_rating, double load, double exponent) {
+  return load > 0 ? finite_or_none(std::pow(dynamic_rating / load, exponent)) : not_computed();
 }
 
 double combined_life(std::span<const double> lives) {

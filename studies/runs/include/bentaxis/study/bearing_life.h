@@ -15,6 +15,8 @@ namespace bentaxis::study {
 
 /// Of roller bearings: L10 = (C / P)^(10/3) million revolutions (ISO 281:2007, 7.2).
 inline constexpr double kLifeExponent = 10.0 / 3;
+/// Of ball bearings.
+inline constexpr double kBallLifeExponent = 3;
 /// Of roller bearings: slope of the Weibull distribution of their lives (Lundberg & Palmgren 1952).
 inline constexpr double kWeibullSlope = 9.0 / 8;
 /// ISO 281 holds for loads up to this share of C (and up to C0).
@@ -32,7 +34,7 @@ double equivalent_static_load(const TaperedRating& rating, double radial, double
 /// (sum q P^p / sum q)^(1/p).
 double mean_load(std::span<const double> loads, std::span<const double> shares);
 /// L10 in millions of revolutions; not_computed() without load.
-double rating_life(double dynamic_rating, double load);
+double rating_life(double dynamic_rating, double load, double exponent = kLifeExponent);
 /// That of bearings of which none may fail: (sum L^-e)^(-1/e), e the Weibull slope; not_computed()
 /// where one is.
 double combined_life(std::span<const double> lives);
