@@ -136,5 +136,59 @@ TEST(IdentificationStudy, TheTruthIsInsideItsBandsAndTheyAreAsNarrowAsTheyCanBe)
             bound_of(covariance, std::span(slopes).subspan(c * n, n)));
 }
 
+// Simulation-based calibration (Talts et al. 2018): rigs whose parameters are drawn from the
+// bounds. The rank of a true value among draws of its posterior is then uniform.
+TEST(IdentificationStudy, RanksOfTrueValuesAreUniform) {
+  if (least_squares_library().empty()) GTEST_SKIP() << "without Ceres";
+  if (std::getenv("BENTAXIS_SLOW_TESTS") == nullptr) GTEST_SKIP() << "BENTAXIS_SLOW_TESTS not set";
+  constexpr int kRigs = 200, kDraws = 63, kBins = 8;
+  constexpr double kLargest = 24.32;  // of chi-square with 7 degrees of freedom: one in a thousand
+  const Case base = truth();
+  std::mt19937_64 engine(7);
+  std::vector<std::vector<int>> bins;
+  int refuted = 0;
+  for (int rig = 0; rig < kRigs; ++rig) {
+    Case the_case = base;
+    std::vector<double> drawn;
+    for (const std::string& text : kUnknowns) {
+      const Unknown u = unknown_of("--vary", text, base);
+      const double share = (static_cast<double>(engine() >> 11U) + 0.5) * 0x1p-53;
+      drawn.push_back(u.low + share * (u.high - u.low));
+      u.variable.put(the_case, drawn.back());
+    }
+    bins.resize(drawn.size(), std::vector<int>(kBins, 0));
+    const ResultTable turn = study::run_turn(study::prepare(the_case), study::Model::analytic);
+    const DataModel model(base, record_of(the_case, turn, 5000 + static_cast<unsigned>(rig)));
+    IdentifyOptions options;
+    options.starts = 2;
+    options.steps = 400;
+    options.draws = kDraws;
+    options.profiles = options.leave_one_out = false;
+    const Posterior posterior = identify(model, options).posterior;
+    if (posterior.count == 0) {  // refuted by chance: one in a thousand
+      ++refuted;
+      continue;
+    }
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+      int rank = 0;
+      for (std::size_t d = 0; d < posterior.count; ++d)
+        rank += posterior.unknowns[d * drawn.size() + i] < drawn[i];
+      ++bins[i][static_cast<std::size_t>(rank * kBins / (kDraws + 1))];
+    }
+  }
+  EXPECT_LE(refuted, 2);
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    const double each = static_cast<double>(kRigs - refuted) / kBins;
+    double chi_square = 0;
+    std::printf("%-32s ranks", kUnknowns[i].c_str());
+    for (const int count : bins[i]) {
+      chi_square += std::pow(count - each, 2) / each;
+      std::printf(" %d", count);
+    }
+    std::printf(", chi-square %.1f of at most %.1f\n", chi_square, kLargest);
+    EXPECT_LE(chi_square, kLargest) << kUnknowns[i];
+  }
+}
+
 }  // namespace
 }  // namespace bentaxis::designs

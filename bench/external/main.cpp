@@ -23,7 +23,8 @@ int main() {
                           {"gum_supplement", gum_supplement},
                           {"posterior", posterior},
                           {"stiff", stiff},
-                          {"bearings", bearings}};
+                          {"bearings", bearings},
+                          {"modelica", modelica}};
   int status = 0;
   for (const Group& group : groups) try {
       const auto start = std::chrono::steady_clock::now();

@@ -22,6 +22,7 @@ Numbers regression();            ///< NIST's nonlinear regressions
 Numbers sobol();                 ///< functions whose variance is known part by part
 Numbers gum_supplement();        ///< JCGM 101:2008, 9.2 to 9.4
 Numbers posterior();             ///< the sampler of identification
+Numbers modelica();              ///< examples of the Modelica library
 Numbers bearings();              ///< ISO 281, ISO/TS 16281
 Numbers stiff();                 ///< Test Set for IVP Solvers
 
