@@ -1,5 +1,5 @@
-// Imports FMUs of others and steps them through their default experiment (docs/external_benchmarks.md):
-// a line of JSON for each.
+// Imports FMUs of others and steps them through their default experiment
+// (docs/external_benchmarks.md): a line of JSON for each.
 //
 //   foreign_fmus FILE.fmu..
 #include <cmath>
