@@ -69,19 +69,19 @@ void put_universal(Numbers& numbers) {
 // ModelicaTest.MultiBody.Joints.SphericalSpherical: a rod with its mass in the middle between a
 // ball joint and a slider along x at (1, 0.2, 0).
 void put_rod(Numbers& numbers) {
-  constexpr double length = 1.04;
+  constexpr double kLength = 1.04;
   const Vec3 slider(1, 0.2, 0);
   World w;
-  const Vec3 middle(length / 2, 0, 0);
+  const Vec3 middle(kLength / 2, 0, 0);
   MobilizedBody::Ball rod(
-      w.matter.updGround(), Transform(Rotation(std::asin(0.2 / length), ZAxis)),
+      w.matter.updGround(), Transform(Rotation(std::asin(0.2 / kLength), ZAxis)),
       Body::Rigid(MassProperties(1, middle, Inertia(1e-3).shiftFromMassCenter(middle, 1))),
       Transform());
   const multibody::InlineJoint line(w.matter.updGround(), UnitVec3(XAxis), slider, rod,
-                                    Vec3(length, 0, 0));
+                                    Vec3(kLength, 0, 0));
   State state = w.system.realizeTopology();
   w.system.realize(state, Stage::Acceleration);
-  const Vec3 end = rod.findStationLocationInGround(state, Vec3(length, 0, 0));
+  const Vec3 end = rod.findStationLocationInGround(state, Vec3(kLength, 0, 0));
   // What the rod exerts on the support, at the slider's place.
   const Vec3 on_support = -multibody::constraint_force_on(state, line.constraint(), rod)[1];
   const Vec3 moment = (end - slider) % on_support;
