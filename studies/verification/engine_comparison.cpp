@@ -22,18 +22,13 @@ namespace {
 constexpr double kMaxResidual = 1e-9;
 constexpr std::size_t kModelCount = 2;
 
-// Whether two cases are the same run: all that a file says but names, and how often it is sampled.
+// Whether two cases are the same run, however often they are sampled.
 bool same_run(const Case& a, const Case& b) {
-  const auto values = [](const Case& of) {
-    std::map<std::string, std::string> all;
-    for (const InputEntry& entry : of.entries)
-      if (entry.key != "samples_per_revolution" && entry.key != "revolutions" &&
-          entry.table != "uncertainty" && entry.table != "drive" && entry.table != "bearings_life" &&
-          !entry.table.empty())
-        all[entry.table + "." + entry.key] = entry.value;
-    return all;
-  };
-  return values(a) == values(b);
+  return differing_keys(a, b).empty() && a.analytic == b.analytic &&
+         a.pump.port_plate.has_value() == b.pump.port_plate.has_value() &&
+         a.pump.piston.contact == b.pump.piston.contact &&
+         a.pressure.curve.theta_deg == b.pressure.curve.theta_deg &&
+         a.pressure.curve.pressure == b.pressure.curve.pressure;
 }
 
 // The stored curve of a case, if there is one: its folder's name and values.
