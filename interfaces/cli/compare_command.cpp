@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdio>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -96,7 +97,7 @@ int compare(const Options& options) {
   how.engines.names = options.engines;
   if (const auto data = shipped_reference_data()) {
     how.published = *data / "published";
-    how.engines.curves = *data / "high_precision";
+    how.engines.curves = {*data / "high_precision", *data / "transfers"};
   }
   study::ComparisonResult result =
       study::compare_models(std::move(first), std::move(second), how, progress_of);
@@ -124,8 +125,12 @@ int compare(const Options& options) {
       folders.write("report", document, study::comparison_curves(result, document), curves);
 
   print_result(study::comparison_text(result) + known, paths);
+  std::vector<std::string> failures;
+  if (result.engines) failures = result.engines->failures();
+  for (const std::string& failure : failures)
+    std::fprintf(stderr, "bentaxis: engine %s\n", failure.c_str());
   if (!result.passes()) return kOutOfTolerance;
-  return result.engines && !result.engines->failures().empty() ? kComputationFailed : kDone;
+  return failures.empty() ? kDone : kComputationFailed;
 }
 
 }  // namespace

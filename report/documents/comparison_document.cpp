@@ -143,9 +143,9 @@ report::Table engine_table(const EngineComparison& engines) {
   report::Table table;
   table.columns = {"reaction", "peak"};
   for (std::size_t i = 1; i < engines.results.size(); ++i)
-    table.columns.push_back(engines.results[i] + " - analytic");
+    table.columns.push_back(engines.results[i]);
   if (!engines.curve.empty())
-    for (const std::string& name : engines.results) table.columns.push_back(name + " - curve");
+    for (const std::string& name : engines.results) table.columns.push_back(name + ", curve");
   table.columns.insert(table.columns.end(), {"largest difference", "at, deg", "stands alone"});
   for (const EngineRow& row : engines.rows) {
     std::vector<report::Cell> cells = {row.group, fmt::format("{:.4g} {}", row.peak, row.unit)};
@@ -170,8 +170,9 @@ report::Section engine_section(const EngineComparison& engines) {
   section.title = "Engines";
   section.text =
       engines.headline() +
-      " The table has digits of agreement, relative to the peak of a reaction; \"!\" marks a "
-      "difference above the tolerance.";
+      " The table has digits of agreement with the analytic model and, in the columns named curve, "
+      "with the stored curve, relative to the peak of a reaction. \"!\" marks a difference above the "
+      "tolerance.";
   section.text += engines.curve.empty()
                       ? " There is no stored curve of this case."
                       : fmt::format(" The judge is the stored curve {} of 50-digit arithmetic, at {} "

@@ -18,15 +18,14 @@ struct Mechanism;
 
 namespace bentaxis::study {
 
-/// Tolerance of an engine at given motion, over the peak of a reaction. All engines compute the
-/// same equations there in double precision, so that it is that of Simbody.
+/// Tolerance of an engine at given motion, over the peak of a reaction; of one that is not known
+/// that of Simbody (kDrivenTolerance).
 double engine_tolerance(const std::string& engine);
 
 struct EngineOptions {
   std::vector<std::string> names;  ///< of engines; empty: none
-  /// Stored curves of 50 digits, of which one may be the case's (reference_data/high_precision);
-  /// empty: none.
-  std::filesystem::path curves;
+  /// Folders of stored curves of 50 digits, of which one may be the case's.
+  std::vector<std::filesystem::path> curves;
   /// Changes what engines are given: for negative controls.
   std::function<void(engines::Mechanism&)> change = {};
 };
