@@ -48,7 +48,7 @@ class EachEngine : public testing::TestWithParam<std::string> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(All, EachEngine, testing::ValuesIn(engines::known_engines()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& engine) { return engine.param; });
 
 // Written down before the engines were run: 1e-9, as of Simbody (studies/verification).
 TEST_P(EachEngine, AgreesWithEveryCurveOf50Digits) {
@@ -117,11 +117,14 @@ TEST_P(EachEngine, FaultsInTheDescriptionAreFound) {
     // A description that contradicts itself may be refused instead: joints carry what they cannot.
     if (!result.failures().empty()) {
       EXPECT_NE(result.failures().front().find("beyond their supports"), std::string::npos) << fault;
+      std::cout << fault << ": " << result.failures().front() << "\n";
       continue;
     }
     EXPECT_FALSE(result.agrees()) << fault;
     for (const study::EngineRow& row : result.rows)
-      if (row.group == group) EXPECT_EQ(row.odd, GetParam()) << fault << ", " << group;
+      if (row.group == group) {
+        EXPECT_EQ(row.odd, GetParam()) << fault << ", " << group;
+      }
   }
 }
 
@@ -155,9 +158,10 @@ TEST(Mechanisms, LoopsAreClosedInPositionVelocityAndAcceleration) {
                   2e-14 * speed * length);
         EXPECT_LT((piston.acceleration_of(on_piston) - frames[0].acceleration_of(on_shaft)).norm(),
                   1e-13 * speed * speed * length);
-        if (the_case.analytic.inertia == PistonInertia::real)
+        if (the_case.analytic.inertia == PistonInertia::real) {
           EXPECT_NEAR(piston.turning.dot(piston.axes.col(2)), the_case.pump.piston.real->spin,
                       1e-12 * speed);
+        }
       }
     }
   }
