@@ -148,7 +148,7 @@ class Assembler {
   Vector origin2_;
   Wrench lands_ = Wrench::Zero();
   Mechanism mechanism_;
-  std::vector<Coordinate> coordinates_;  // of all bodies; the pistons' start from the last sample
+  std::vector<Coordinate> coordinates_;  // of all bodies
 };
 
 void Assembler::add_bodies() {
@@ -259,10 +259,10 @@ void Assembler::close_loop(int k, const FrameMotion& shaft, const FrameMotion& b
   Coordinate* at = &coordinates_[2 + k * piston_freedoms()];
   const Vector joint(0, 0, -pump_.geometry.piston_length);
   const Vector wanted = shaft.point(joint_on_shaft(k));
-  if (mechanism_.states.empty())  // the first sample: a piston along its bore
-    at[kSlide].position =
-        pump_.geometry.piston_length + (wanted - origin2_).dot(axes2_.col(2));
-  for (std::size_t i = 0; i < body.freedoms.size(); ++i) at[i].velocity = at[i].acceleration = 0;
+  // From a piston along its bore Newton's steps never overshoot, so that they lead to the solution
+  // with B above A and not to the one beyond a right angle.
+  for (std::size_t i = 0; i < body.freedoms.size(); ++i) at[i] = {};
+  at[kSlide].position = pump_.geometry.piston_length + (wanted - origin2_).dot(axes2_.col(2));
   Eigen::Matrix3d jacobian;
   const auto frame_with_jacobian = [&] {
     std::vector<Vector> axes;
@@ -271,14 +271,15 @@ void Assembler::close_loop(int k, const FrameMotion& shaft, const FrameMotion& b
     jacobian << axes[kSlide], axes[kFirstTilt].cross(arm), axes[kSecondTilt].cross(arm);
     return frame;
   };
-  constexpr int kTries = 60;
+  constexpr int kTries = 100;
   double before = 1e300;
   for (int tried = 0;; ++tried) {
-    const Vector missing = wanted - frame_with_jacobian().point(joint);
+    const FrameMotion frame = frame_with_jacobian();
+    const Vector missing = wanted - frame.point(joint);
     // Converged where a step no longer makes it smaller.
     const double size = missing.norm();
     if (size <= 1e-12 * pump_.geometry.piston_length && size >= before / 2) break;
-    if (tried == kTries || !(size < 1e300))
+    if (tried == kTries || !(size < 1e300) || !(frame.axes.col(2).dot(axes2_.col(2)) > 0))
       throw ComputationError("engines: piston " + std::to_string(k + 1) +
                              " does not reach from its joint to its bore");
     const Vector step = jacobian.partialPivLu().solve(missing);
