@@ -36,8 +36,8 @@ constexpr int kShaft = 0, kBlock = 1, kFirstPiston = 2;
 constexpr int kSlide = 0, kFirstTilt = 1, kSecondTilt = 2, kSpin = 3;  // freedoms of a piston
 
 void refuse(const Case& the_case, const std::string& what) {
-  throw InputError(the_case.file.string() + ": --engine: the description of the pump for engines has no " +
-                   what);
+  throw InputError(the_case.file.string() +
+                   ": --engine: the description of the pump for engines has no " + what);
 }
 
 void check(const Case& the_case) {
@@ -69,7 +69,8 @@ Wrench land_load(const PortPlate& plate, const PortPressures& ports) {
               const double here =
                   pressure * (at_inner + (at_outer - at_inner) * (r - inner) / (outer - inner));
               return here * r *
-                     Rule::integrate([&](double psi) { return weight(r, psi); }, from, from + width);
+                     Rule::integrate([&](double psi) { return weight(r, psi); }, from,
+                                     from + width);
             },
             inner, outer);
       };
@@ -78,8 +79,8 @@ Wrench land_load(const PortPlate& plate, const PortPressures& ports) {
       load[4] -= integral([](double r, double psi) { return r * std::sin(psi); });
     }
   };
-  for (const auto& [arc, pressure] : {std::pair(plate.delivery, ports.delivery),
-                                      std::pair(plate.suction, ports.suction)}) {
+  for (const auto& [arc, pressure] :
+       {std::pair(plate.delivery, ports.delivery), std::pair(plate.suction, ports.suction)}) {
     add(arc, pressure, plate.r1, plate.r2, 0, 1);
     add(arc, pressure, plate.r2, plate.r3, 1, 1);
     add(arc, pressure, plate.r3, plate.r4, 1, 0);
@@ -308,8 +309,8 @@ void Assembler::close_loop(int k, const FrameMotion& shaft, const FrameMotion& b
 
 void Assembler::add_state(std::size_t row) {
   const double omega = samples_.omega;
-  coordinates_[kShaft] = coordinates_[kBlock] = {
-      radians(std::fmod(samples_.theta_deg[row], 360.0)), omega, 0};
+  coordinates_[kShaft] =
+      coordinates_[kBlock] = {radians(std::fmod(samples_.theta_deg[row], 360.0)), omega, 0};
   const FrameMotion shaft = moved({}, mechanism_.bodies[kShaft], coordinates_.data());
   const FrameMotion block = moved({}, mechanism_.bodies[kBlock], &coordinates_[kBlock]);
   State state;

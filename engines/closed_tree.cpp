@@ -50,9 +50,8 @@ class Closing {
     // With all forces in place the engine says what is left, so that errors of the first solution
     // are taken away.
     tree_.set(position, velocity, acceleration, true);
-    const Wrenches known =
-        Eigen::Map<const Wrenches>(task_.loads + 6 * Eigen::Index{sample} * task_.bodies, 6,
-                                   task_.bodies);
+    const Wrenches known = Eigen::Map<const Wrenches>(
+        task_.loads + 6 * Eigen::Index{sample} * task_.bodies, 6, task_.bodies);
     Eigen::VectorXd sizes = Eigen::VectorXd::Zero(unknowns_);
     double residual = 0;
     for (int pass = 0; pass < 2; ++pass) {

@@ -27,7 +27,7 @@ extern char** environ;
 namespace bentaxis::engines {
 namespace {
 
-constexpr double kLongest = 600;      // s, of a process
+constexpr double kLongest = 600;         // s, of a process
 constexpr useconds_t kLookEvery = 2000;  // us
 
 std::filesystem::path find_file(const std::string& file) {
@@ -51,7 +51,8 @@ std::string module_of(const std::string& name) { return "bentaxis_engine_" + nam
 // Memory that a child process gets as a descriptor.
 class SharedMemory {
  public:
-  explicit SharedMemory(std::size_t size) : size_(size), file_(memfd_create("bentaxis", MFD_CLOEXEC)) {
+  explicit SharedMemory(std::size_t size)
+      : size_(size), file_(memfd_create("bentaxis", MFD_CLOEXEC)) {
     if (file_ < 0 || ftruncate(file_, static_cast<off_t>(size)) != 0) return;
     void* memory = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
     if (memory != MAP_FAILED) memory_ = memory;
@@ -160,8 +161,8 @@ std::string how_it_ended(const std::optional<int>& status, const std::string& wo
   if (!status) return fmt::format("did not end within {:g} s", kLongest);
   const std::string said = words.empty() ? "" : ": " + words;
   if (WIFSIGNALED(*status))
-    return fmt::format("crashed (signal {}, {}){}", WTERMSIG(*status),
-                       strsignal(WTERMSIG(*status)), said);
+    return fmt::format("crashed (signal {}, {}){}", WTERMSIG(*status), strsignal(WTERMSIG(*status)),
+                       said);
   return fmt::format("ended before it had answered (exit status {}){}", WEXITSTATUS(*status), said);
 }
 
@@ -173,7 +174,9 @@ const std::vector<std::string>& known_engines() {
 }
 
 bool is_engine(const std::string& name) {
-  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  };
   if (name.empty() || !std::all_of(name.begin(), name.end(), is_letter)) return false;
   const auto& known = known_engines();
   return std::find(known.begin(), known.end(), name) != known.end() ||
@@ -191,7 +194,8 @@ Answer run_engine(const std::string& name, const Mechanism& m, const Progress& p
     return failed("is not installed: there is no " + module_of(name) +
                   " beside the program or in BENTAXIS_ENGINE_PATH");
   const std::filesystem::path runner = find_file("bentaxis_engine_runner");
-  if (runner.empty()) return failed("cannot be run: there is no bentaxis_engine_runner beside the program");
+  if (runner.empty())
+    return failed("cannot be run: there is no bentaxis_engine_runner beside the program");
   Shared counts;
   const auto count = [](const auto& list) { return static_cast<std::int32_t>(list.size()); };
   counts.bodies = count(m.bodies);
@@ -203,7 +207,8 @@ Answer run_engine(const std::string& name, const Mechanism& m, const Progress& p
   counts.length = m.length;
   Arrays arrays{};
   const SharedMemory memory(lay_out(nullptr, counts, arrays)), output(1);
-  if (memory.get() == nullptr || output.get() == nullptr) return failed("there is no memory for it");
+  if (memory.get() == nullptr || output.get() == nullptr)
+    return failed("there is no memory for it");
   auto* shared = new (memory.get()) Shared(counts);
   lay_out(shared, counts, arrays);
   write(m, arrays);

@@ -25,23 +25,25 @@ void run(const char* module, Shared& shared) {
   };
   void* library = dlopen(module, RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) return failed(Outcome::not_loaded);
-  auto* engine =
-      reinterpret_cast<decltype(&bentaxis_engine)>(dlsym(library, "bentaxis_engine"));
+  auto* engine = reinterpret_cast<decltype(&bentaxis_engine)>(dlsym(library, "bentaxis_engine"));
   if (engine == nullptr) return failed(Outcome::no_function);
   Arrays at{};
   bentaxis::engines::lay_out(&shared, shared, at);
-  bentaxis_engine_task task{shared.bodies, shared.freedoms, shared.samples, shared.actions,
-                            shared.supports, {}, shared.length, at.parent, at.place, at.axes,
-                            at.mass, at.centre, at.inertia, at.freedom_body, at.freedom_turns,
-                            at.freedom_axis, at.position, at.velocity, at.acceleration, at.loads,
-                            at.action, at.support_body, at.support};
+  bentaxis_engine_task task{shared.bodies,   shared.freedoms, shared.samples,
+                            shared.actions,  shared.supports, {},
+                            shared.length,   at.parent,       at.place,
+                            at.axes,         at.mass,         at.centre,
+                            at.inertia,      at.freedom_body, at.freedom_turns,
+                            at.freedom_axis, at.position,     at.velocity,
+                            at.acceleration, at.loads,        at.action,
+                            at.support_body, at.support};
   std::copy_n(shared.gravity, 3, task.gravity);
   bentaxis_engine_answer answer{at.values, at.residual, ""};
   shared.interface = engine(BENTAXIS_ENGINE_INTERFACE, &task, &answer);
   std::copy_n(answer.text, sizeof answer.text, shared.text);
   shared.text[sizeof shared.text - 1] = 0;
-  shared.outcome = shared.interface == BENTAXIS_ENGINE_INTERFACE ? Outcome::returned
-                                                                 : Outcome::other_interface;
+  shared.outcome =
+      shared.interface == BENTAXIS_ENGINE_INTERFACE ? Outcome::returned : Outcome::other_interface;
 }
 
 }  // namespace

@@ -9,7 +9,13 @@
 
 namespace bentaxis::engines {
 
-enum class Outcome : std::int32_t { unfinished, returned, not_loaded, no_function, other_interface };
+enum class Outcome : std::int32_t {
+  unfinished,
+  returned,
+  not_loaded,
+  no_function,
+  other_interface
+};
 
 /// At the begin of the memory; the arrays follow.
 struct Shared {
@@ -36,9 +42,8 @@ inline std::size_t lay_out(Shared* shared, const Shared& counts, Arrays& arrays)
     end += (count * sizeof(*array) + 7) / 8 * 8;
   };
   const auto count = [](std::int32_t number) { return static_cast<std::size_t>(number); };
-  const std::size_t b = count(counts.bodies), f = count(counts.freedoms),
-                    n = count(counts.samples), a = count(counts.actions),
-                    s = count(counts.supports);
+  const std::size_t b = count(counts.bodies), f = count(counts.freedoms), n = count(counts.samples),
+                    a = count(counts.actions), s = count(counts.supports);
   place(arrays.parent, b);
   place(arrays.freedom_body, f);
   place(arrays.freedom_turns, f);

@@ -84,7 +84,7 @@ TEST(MujocoTraps, InverseDynamicsAtExactMotionHasNoLoopForces) {
     </worldbody><equality><connect body1="rod" anchor="1 0 0"/></equality></mujoco>)");
   mj_inverse(scene.model, scene.data);
   ASSERT_EQ(scene.data->nefc, 3);
-  EXPECT_NEAR(scene.data->efc_force[2], 0, 1e-9);       // statics: 5 N
+  EXPECT_NEAR(scene.data->efc_force[2], 0, 1e-9);      // statics: 5 N
   EXPECT_NEAR(scene.data->qfrc_inverse[0], -5, 1e-9);  // as if there were no loop
 }
 
@@ -109,10 +109,11 @@ TEST(MujocoTraps, ConstraintsCannotBeMadeHard) {
   double force[2] = {};
   int i = 0;
   for (const char* value : {"0.9999", "0.9999999"}) {
-    const Scene scene(std::string(R"(<mujoco><option gravity="0 0 -10" tolerance="1e-14"/><worldbody>
+    const Scene scene(
+        std::string(R"(<mujoco><option gravity="0 0 -10" tolerance="1e-14"/><worldbody>
       <body name="rod"><inertial pos="0.5 0 0" mass="1" diaginertia="1 1 1"/><joint axis="0 1 0"/></body>
       </worldbody><equality><connect body1="rod" anchor="1 0 0" solimp=")") +
-                      value + " " + value + R"( 0.001 0.5 2"/></equality></mujoco>)");
+        value + " " + value + R"( 0.001 0.5 2"/></equality></mujoco>)");
     mj_forward(scene.model, scene.data);
     force[i++] = scene.data->efc_force[2];
   }
@@ -122,8 +123,10 @@ TEST(MujocoTraps, ConstraintsCannotBeMadeHard) {
 // A rod without inertia about its axis, as a lumped piston is, does not compile; the true value can
 // be put in afterwards.
 TEST(MujocoTraps, ABodyNeedsInertiaAboutEveryAxis) {
-  const Scene refused(R"(<mujoco><worldbody><body><inertial pos="0 0 1" mass="1" diaginertia="1 1 0"/>
-    <joint axis="0 1 0"/></body></worldbody></mujoco>)", false);
+  const Scene refused(
+      R"(<mujoco><worldbody><body><inertial pos="0 0 1" mass="1" diaginertia="1 1 0"/>
+    <joint axis="0 1 0"/></body></worldbody></mujoco>)",
+      false);
   EXPECT_EQ(refused.model, nullptr);
   EXPECT_NE(refused.error.find("inertia"), std::string::npos) << refused.error;
 }

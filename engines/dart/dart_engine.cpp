@@ -22,9 +22,7 @@ class DartTree : public Tree {
     for (int body = 0; body < task.bodies; ++body) add_body(body);
   }
 
-  std::string text() const override {
-    return "DART " DART_VERSION ", computeInverseDynamics";
-  }
+  std::string text() const override { return "DART " DART_VERSION ", computeInverseDynamics"; }
 
   void set(const double* position, const double* velocity, const double* acceleration,
            bool moves) override {
@@ -70,16 +68,16 @@ class DartTree : public Tree {
     for (int i = 0; i < task_.freedoms; ++i) {
       if (task_.freedom_body[i] != body) continue;
       const Vector axis = Eigen::Map<const Vector>(task_.freedom_axis + 3 * i);
-      node = task_.freedom_turns[i] != 0 ? add_link<dart::dynamics::RevoluteJoint>(node, i, frame, axis)
-                                         : add_link<dart::dynamics::PrismaticJoint>(node, i, frame, axis);
+      node = task_.freedom_turns[i] != 0
+                 ? add_link<dart::dynamics::RevoluteJoint>(node, i, frame, axis)
+                 : add_link<dart::dynamics::PrismaticJoint>(node, i, frame, axis);
       if (first_.back() == nullptr) first_.back() = node;
       frame = Eigen::Isometry3d::Identity();
     }
     last_.push_back(node);
     const Vector inertia = Eigen::Map<const Vector>(task_.inertia + 3 * body);
-    node->setInertia(dart::dynamics::Inertia(task_.mass[body],
-                                             Eigen::Map<const Vector>(task_.centre + 3 * body),
-                                             inertia.asDiagonal()));
+    node->setInertia(dart::dynamics::Inertia(
+        task_.mass[body], Eigen::Map<const Vector>(task_.centre + 3 * body), inertia.asDiagonal()));
   }
 
   template <class Kind>

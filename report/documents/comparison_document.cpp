@@ -171,18 +171,20 @@ report::Section engine_section(const EngineComparison& engines) {
   section.text =
       engines.headline() +
       " The table has digits of agreement with the analytic model and, in the columns named curve, "
-      "with the stored curve, relative to the peak of a reaction. \"!\" marks a difference above the "
+      "with the stored curve, relative to the peak of a reaction. \"!\" marks a difference above "
+      "the "
       "tolerance.";
   section.text += engines.curve.empty()
                       ? " There is no stored curve of this case."
-                      : fmt::format(" The judge is the stored curve {} of 50-digit arithmetic, at {} "
-                                    "angles.",
-                                    engines.curve, engines.curve_angles);
+                      : fmt::format(
+                            " The stored curve is {}, of 50-digit arithmetic, at {} "
+                            "angles.",
+                            engines.curve, engines.curve_angles);
   for (const EngineRun& run : engines.runs)
     section.facts.emplace_back(
         run.name, run.failure.empty()
                       ? fmt::format("{}; given motion, tolerance {:g}; {:.1e} of all that joints "
-                                    "carry is beyond their supports; {:.2g} s",
+                                    "carry is more than their supports can; {:.2g} s",
                                     run.text, run.tolerance, run.residual, run.seconds)
                       : "no results: " + run.failure);
   for (const auto& [channel, reason] : engines.not_given)

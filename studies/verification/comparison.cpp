@@ -696,7 +696,8 @@ ComparisonResult compare_models(Case analytic_case, std::optional<Case> multibod
   if (multibody_case) check_same_run(analytic_case, *multibody_case);
   check_engines(options.engines.names);
   if (!options.engines.names.empty() && options.way != Way::driven)
-    throw InputError("--engine: must be left out beside --way integrated: engines run at given motion");
+    throw InputError(
+        "--engine: must be left out beside --way integrated: engines run at given motion");
   require_memory(analytic_case, Kept::compared, options.way);
   PreparedCase first = prepare(std::move(analytic_case), progress_of);
   // The same case is solved once: both models get the very same curve.

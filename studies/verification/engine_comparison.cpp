@@ -38,14 +38,13 @@ std::optional<std::pair<std::string, ResultTable>> stored_curve(
     for (const ReferencePlace& place : references_below(folder)) {
       const auto description = compare::read_description(place.folder, place.name);
       if (description.kind == compare::ReferenceKind::high_precision &&
-          description.curves.size() == 1 &&
-          same_run(read_case(description.case_file), the_case))
-        return std::pair(place.name,
-                         compare::read_reference_curve(
-                             description, description.curves.front(),
-                             ChannelLayout(the_case.pump).channels(),
-                             rad_per_second(the_case.operation.speed_rpm) / kRadPerDegree)
-                             .table);
+          description.curves.size() == 1 && same_run(read_case(description.case_file), the_case))
+        return std::pair(
+            place.name,
+            compare::read_reference_curve(
+                description, description.curves.front(), ChannelLayout(the_case.pump).channels(),
+                rad_per_second(the_case.operation.speed_rpm) / kRadPerDegree)
+                .table);
     }
   return std::nullopt;
 }
@@ -168,15 +167,14 @@ EngineComparison compare_engines(const PreparedCase& ready, const EngineOptions&
     EngineRun run;
     run.name = name;
     run.tolerance = engine_tolerance(name);
-    engines::Answer answer =
-        engines::run_engine(name, mechanism, progress_of("engine " + name));
+    engines::Answer answer = engines::run_engine(name, mechanism, progress_of("engine " + name));
     run.failure = answer.failure;
     run.text = answer.text;
     run.residual = answer.residual;
     run.seconds = answer.seconds;
     if (run.failure.empty() && !(run.residual <= kMaxResidual))
-      run.failure = fmt::format("{}: joints carry {:.1e} of their loads beyond their supports", name,
-                                run.residual);
+      run.failure = fmt::format("{}: joints carry {:.1e} of their loads outside of their supports",
+                                name, run.residual);
     if (run.failure.empty()) run.table = table_of(name, mechanism, answer, given);
     result.runs.push_back(std::move(run));
     if (!result.runs.back().failure.empty()) continue;
@@ -260,10 +258,9 @@ std::string EngineComparison::headline() const {
         engine = results[i];
       }
   if (worst == nullptr) return "No engine has given results.";
-  const std::string largest =
-      fmt::format("{} of {} at {:g} deg: {} of peak from the analytic model (tolerance {:g})",
-                  worst->channel, engine, worst->theta_deg, worst->difference.share_text(),
-                  worst->tolerance);
+  const std::string largest = fmt::format(
+      "{} of {} at {:g} deg: {} of peak from the analytic model (tolerance {:g})", worst->channel,
+      engine, worst->theta_deg, worst->difference.share_text(), worst->tolerance);
   if (agrees()) return "All engines agree. Largest difference: " + largest + ".";
   return fmt::format("Engines differ: {}.{}", largest,
                      where->odd.empty()

@@ -52,7 +52,7 @@ struct Support {
 
 /// A column of results: a sum of sizes of unknown forces.
 struct Reading {
-  std::string channel;  ///< "Rs_1_x2_N"
+  std::string channel;                        ///< "Rs_1_x2_N"
   std::vector<std::pair<int, double>> terms;  ///< place among actions, then supports; factor
 };
 

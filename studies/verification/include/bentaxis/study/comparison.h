@@ -43,8 +43,8 @@ struct ComparisonOptions {
   std::filesystem::path with;  ///< a reference to hold both models to as well; empty: none
   /// The cases differ in what drives the block: split from the difference as an assumption.
   bool split_transfer = false;
-  EngineOptions engines;         ///< of others to run beside the models; none: driven only
-  bool loads = false;  ///< all loads on the bodies too, of a driven run of full pumps
+  EngineOptions engines;  ///< of others to run beside the models; none: driven only
+  bool loads = false;     ///< all loads on the bodies too, of a driven run of full pumps
 };
 
 /// Assumptions in words: name and value.
@@ -86,7 +86,7 @@ struct ComparisonResult {
   MultibodyLosses losses;  ///< of a driven run
   std::vector<Warning> warnings;
   std::optional<compare::PublishedTable> published;
-  std::optional<Outcome> with;  ///< both models held to a reference
+  std::optional<Outcome> with;              ///< both models held to a reference
   std::optional<EngineComparison> engines;  ///< where any were asked for
 
   bool checks_hold() const;

@@ -54,7 +54,7 @@ struct EngineCell {
 /// A group of channels that share a peak.
 struct EngineRow {
   std::string group, unit;
-  double peak = 0;                           ///< of the analytic model
+  double peak = 0;                             ///< of the analytic model
   std::vector<std::vector<EngineCell>> pairs;  ///< of two results, by their places
   std::vector<EngineCell> curve;               ///< of a result and the stored curve; or empty
   std::string odd;  ///< results that stand alone: those which the curve says are wrong, else one
@@ -63,8 +63,8 @@ struct EngineRow {
 
 struct EngineComparison {
   std::vector<EngineRun> runs;
-  std::string curve;  ///< name of the stored curve of this case; "" where there is none
-  std::size_t curve_angles = 0;      ///< at which it is compared
+  std::string curve;             ///< name of the stored curve of this case; "" where there is none
+  std::size_t curve_angles = 0;  ///< at which it is compared
   std::vector<std::string> results;  ///< "analytic", "multibody", then engines with results
   std::vector<EngineRow> rows;
   /// Channels that no engine gives, with the reason.
@@ -85,6 +85,7 @@ void check_engines(const std::vector<std::string>& names);
 /// @throws InputError where the description for engines lacks something of the case
 EngineComparison compare_engines(const PreparedCase& ready, const EngineOptions& options,
                                  const ResultTable& analytic, const ResultTable& multibody,
-                                 double model_tolerance, const PartProgress& progress_of = silent());
+                                 double model_tolerance,
+                                 const PartProgress& progress_of = silent());
 
 }  // namespace bentaxis::study
