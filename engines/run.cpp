@@ -173,6 +173,12 @@ const std::vector<std::string>& known_engines() {
   return names;
 }
 
+std::vector<std::string> installed_engines() {
+  std::vector<std::string> names = known_engines();
+  std::erase_if(names, [](const std::string& name) { return find_file(module_of(name)).empty(); });
+  return names;
+}
+
 bool is_engine(const std::string& name) {
   const auto is_letter = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';

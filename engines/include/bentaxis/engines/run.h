@@ -12,6 +12,9 @@ namespace bentaxis::engines {
 /// Engines that the program has modules for, where their libraries are installed.
 const std::vector<std::string>& known_engines();
 
+/// Those of them whose modules are there.
+std::vector<std::string> installed_engines();
+
 /// What an engine says of a mechanism, or why it says nothing.
 struct Answer {
   std::string failure;         ///< one line; "": there are values
