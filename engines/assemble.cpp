@@ -267,7 +267,7 @@ void Assembler::close_loop(int k, const FrameMotion& shaft, const FrameMotion& b
   Eigen::Matrix3d jacobian;
   const auto frame_with_jacobian = [&] {
     std::vector<Vector> axes;
-    const FrameMotion frame = moved(block, body, at, &axes);
+    FrameMotion frame = moved(block, body, at, &axes);
     const Vector arm = frame.axes * joint;
     jacobian << axes[kSlide], axes[kFirstTilt].cross(arm), axes[kSecondTilt].cross(arm);
     return frame;
@@ -349,7 +349,7 @@ void Assembler::add_state(std::size_t row) {
   state.loads[kShaft] -= pump_.block.spring_force * force_at(origin2_, z2) +
                          friction.shaft_viscous * omega * couple(z1);
   // Part of the drive torque is lost in proportion.
-  state.actions.push_back(friction.shaft_torque_factor * couple(z1));
+  state.actions.emplace_back(friction.shaft_torque_factor * couple(z1));
   state.actions.push_back(meshes()      ? force_at(mesh_point(), line_of_action())
                           : has_joint() ? couple(between_axes())
                                         : couple(z2));
