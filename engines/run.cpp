@@ -114,7 +114,7 @@ std::string last_words(int file) {
   const off_t from = std::max<off_t>(0, size - static_cast<off_t>(text.size()));
   const ssize_t read = pread(file, text.data(), text.size(), from);
   text.resize(static_cast<std::size_t>(std::max<ssize_t>(0, read)));
-  while (!text.empty() && text.back() == '\n') text.pop_back();
+  while (!text.empty() && (text.back() == '\n' || text.back() == 0)) text.pop_back();
   const std::size_t line = text.rfind('\n');
   return without_control_characters(line == std::string::npos ? text : text.substr(line + 1));
 }
@@ -150,6 +150,7 @@ std::optional<int> run_process(const std::string& runner, const std::string& mod
       progress(0);
       usleep(kLookEvery);
     }
+    progress(1);  // an interruption ends the process as well
   } catch (...) {
     end();
     throw;

@@ -112,15 +112,16 @@ std::string odd_ones(const EngineRow& row, const std::vector<std::string>& names
       if (row.curve[i].differs()) add(i);
     return odd;
   }
-  const auto agree = [&](std::size_t i, std::size_t j) { return !row.pairs[i][j].differs(); };
+  const auto agree = [](const EngineCell& cell) { return cell.difference.within(cell.tolerance); };
   for (std::size_t i = 0; i < names.size(); ++i) {
-    bool alone = true, others_agree = false;
+    bool differs = false, agrees = false, others_agree = false;
     for (std::size_t j = 0; j < names.size(); ++j) {
-      if (j != i && agree(i, j)) alone = false;
-      for (std::size_t k = 0; k < j; ++k)
-        if (j != i && k != i && agree(j, k)) others_agree = true;
+      if (j == i) continue;
+      const EngineCell& cell = row.pairs[i][j];
+      (cell.differs() ? differs : agrees) |= cell.difference.known();
+      for (std::size_t k = 0; k < j; ++k) others_agree |= k != i && agree(row.pairs[j][k]);
     }
-    if (alone && others_agree) add(i);
+    if (differs && !agrees && others_agree) add(i);
   }
   return odd;
 }
