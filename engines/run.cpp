@@ -22,8 +22,6 @@
 #include "bentaxis/results/stopwatch.h"
 #include "shared_task.h"
 
-extern char** environ;
-
 namespace bentaxis::engines {
 namespace {
 
