@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Fails if one model links the other, or reaches into its folder past the include path, or what couples them knows one, or if report/
+# Fails if one model links the other, or reaches into its folder past the include path, or what couples them or describes the pump for
+# engines of others knows one, or if report/
 # computes: documents take finished results. That a target finds
 # no headers but those of what it links is the build's doing (scripts/cmake/BentaxisTarget.cmake).
-# usage: independence_test.sh SOURCE_DIR ANALYTIC_LIBRARY MULTIBODY_LIBRARY DOCUMENTS_LIBRARY
+# usage: independence_test.sh SOURCE_DIR ANALYTIC_LIBRARY MULTIBODY_LIBRARY DOCUMENTS_LIBRARY ENGINES_LIBRARY
 set -euo pipefail
-source_dir=$1 analytic=$2 multibody=$3 documents=$4
+source_dir=$1 analytic=$2 multibody=$3 documents=$4 engines=$5
 status=0
 
 forbid_include() {  # folder, forbidden room
@@ -45,6 +46,11 @@ forbid_include "$source_dir/multibody" analytic || status=1
 for room in analytic multibody hydraulics; do
   forbid_include "$source_dir/coupled" $room || status=1
 done
+# What engines of others are given is written down by neither model.
+for room in analytic multibody; do
+  forbid_include "$source_dir/engines" $room || status=1
+done
+forbid_symbol "$engines" '(analytic|multibody)' || status=1
 forbid_computing_headers "$source_dir/report" || status=1
 forbid_computing_calls "$documents" || status=1
 forbid_symbol "$analytic" multibody || status=1

@@ -5,6 +5,7 @@
 #include "bentaxis/designs/propagation.h"
 #include "bentaxis/designs/search.h"
 #include "bentaxis/designs/sweep_tables.h"
+#include "bentaxis/engines/run.h"
 #include "ranks.h"
 #include "versions.h"
 
@@ -21,9 +22,13 @@ std::vector<std::pair<std::string, std::string>> versions() {
 std::string optional_parts() {
   const std::string ceres = designs::least_squares_library();
   const std::string search = designs::search_libraries();
+  std::string engines;
+  for (const std::string& name : engines::installed_engines())
+    engines += (engines.empty() ? "" : " and ") + name;
   return (ceres.empty() ? "Ceres none" : ceres) + ", HDF5 " + designs::hdf5_version() + ", MPI " +
          mpi_library() + ", OpenTURNS " + designs::openturns_version() + ", search " +
-         (search.empty() ? "none" : search) + ", Python module " BENTAXIS_PYTHON;
+         (search.empty() ? "none" : search) + ", engines " + (engines.empty() ? "none" : engines) +
+         ", Python module " BENTAXIS_PYTHON;
 }
 
 }  // namespace bentaxis::cli

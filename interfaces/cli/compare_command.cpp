@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <cstdio>
 #include <iterator>
 #include <memory>
 #include <optional>
 
 #include "bentaxis/designs/explain.h"
 #include "bentaxis/designs/validation_section.h"
+#include "bentaxis/engines/run.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/study/assumptions.h"
 #include "bentaxis/study/comparison.h"
@@ -30,6 +32,7 @@ struct Options {
   int uncertainty = 0;  // samples
   RunChoice choice;
   std::vector<std::string> analytic, multibody;  // KEY=VALUE assumptions
+  std::vector<std::string> engines;
 };
 
 // What drives the block is an assumption that the case file says too: it is read as a change of it.
@@ -91,7 +94,11 @@ int compare(const Options& options) {
   how.with = options.with;
   how.split_transfer = transfer;
   how.loads = true;
-  if (const auto data = shipped_reference_data()) how.published = *data / "published";
+  how.engines.names = options.engines;
+  if (const auto data = shipped_reference_data()) {
+    how.published = *data / "published";
+    how.engines.curves = {*data / "high_precision", *data / "transfers"};
+  }
   study::ComparisonResult result =
       study::compare_models(std::move(first), std::move(second), how, progress_of);
   if (result.with) designs::explain(*result.with, given, progress_of);
@@ -118,7 +125,12 @@ int compare(const Options& options) {
       folders.write("report", document, study::comparison_curves(result, document), curves);
 
   print_result(study::comparison_text(result) + known, paths);
-  return result.passes() ? kDone : kOutOfTolerance;
+  std::vector<std::string> failures;
+  if (result.engines) failures = result.engines->failures();
+  for (const std::string& failure : failures)
+    std::fprintf(stderr, "bentaxis: engine %s\n", failure.c_str());
+  if (!result.passes()) return kOutOfTolerance;
+  return failures.empty() ? kDone : kComputationFailed;
 }
 
 }  // namespace
@@ -155,6 +167,13 @@ Command add_compare_command(CommandParser program) {
               "reference directory whose curves are compared with both models; exit status 1 where "
               "one differs by more than its tolerance")
       .text("FOLDER");
+  command
+      .option("--engine", options->engines,
+              "run engines of others too, at given motion: exit status 1 where one differs by more "
+              "than its tolerance, 3 where one cannot be run")
+      .list()
+      .completed_with(engines::known_engines())
+      .text("NAME[,NAME..]");
   command
       .option("--uncertainty", options->uncertainty,
               "samples of the parameters in [uncertainty]: bands on the curves, and how well the "

@@ -37,6 +37,11 @@ report::Verdict verdict_of(const ComparisonResult& r) {
       verdict.headline += fmt::format(" They differ from {}: {}", r.with->name, held_text(*r.with));
     }
   }
+  if (r.engines && r.agrees() && !r.engines->agrees()) {
+    verdict.models_agree = true;
+    verdict.word = "An engine differs";
+    verdict.headline += " " + r.engines->headline();
+  }
   if (const auto cause = r.cause())
     verdict.cause = {cause->text, cause->round_off, cause->over_scale};
   verdict.tolerance = r.tolerance;
@@ -126,6 +131,97 @@ report::Section rounding_section(const std::vector<RoundingLine>& lines) {
   return section;
 }
 
+std::string digits_text(const EngineCell& cell) {
+  if (!cell.difference.known()) return "";
+  constexpr double kMostDigits = 16;
+  const double share = std::max(cell.difference.share(), std::pow(10, -kMostDigits));
+  return fmt::format("{:.1f}{}", -std::log10(share), cell.differs() ? " !" : "");
+}
+
+// Results by group of channels: digits of agreement with the analytic model and with the curve.
+report::Table engine_table(const EngineComparison& engines) {
+  report::Table table;
+  table.columns = {"reaction", "peak"};
+  for (std::size_t i = 1; i < engines.results.size(); ++i)
+    table.columns.push_back(engines.results[i]);
+  if (!engines.curve.empty())
+    for (const std::string& name : engines.results) table.columns.push_back(name + ", curve");
+  table.columns.insert(table.columns.end(), {"largest difference", "at, deg", "stands alone"});
+  for (const EngineRow& row : engines.rows) {
+    std::vector<report::Cell> cells = {row.group, fmt::format("{:.4g} {}", row.peak, row.unit)};
+    EngineCell worst;
+    for (std::size_t i = 1; i < engines.results.size(); ++i) {
+      cells.emplace_back(digits_text(row.pairs[0][i]));
+      if (worst.difference.keep_larger(row.pairs[0][i].difference)) worst = row.pairs[0][i];
+    }
+    if (!engines.curve.empty())
+      for (std::size_t i = 0; i < engines.results.size(); ++i)
+        cells.emplace_back(row.curve.empty() ? "" : digits_text(row.curve[i]));
+    cells.emplace_back(worst.channel);
+    cells.emplace_back(worst.theta_deg);
+    cells.emplace_back(row.odd);
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+report::Section engine_section(const EngineComparison& engines) {
+  report::Section section;
+  section.title = "Engines";
+  section.text =
+      engines.headline() +
+      " The table has digits of agreement with the analytic model and, in the columns named curve, "
+      "with the stored curve, relative to the peak of a reaction. \"!\" marks a difference above "
+      "the "
+      "tolerance.";
+  section.text += engines.curve.empty()
+                      ? " There is no stored curve of this case."
+                      : fmt::format(
+                            " The stored curve is {}, of 50-digit arithmetic, at {} "
+                            "angles.",
+                            engines.curve, engines.curve_angles);
+  for (const EngineRun& run : engines.runs)
+    section.facts.emplace_back(
+        run.name, run.failure.empty()
+                      ? fmt::format("{}; given motion, tolerance {:g}; {:.1e} of all that joints "
+                                    "carry is more than their supports can; {:.2g} s",
+                                    run.text, run.tolerance, run.residual, run.seconds)
+                      : "no results: " + run.failure);
+  for (const auto& [channel, reason] : engines.not_given)
+    section.facts.emplace_back(channel, "not given: " + reason);
+  section.table = engine_table(engines);
+  return section;
+}
+
+std::string engine_text(const EngineComparison& engines) {
+  std::string text = engines.headline() + "\n";
+  if (!engines.curve.empty())
+    text += fmt::format("curve: {}, {} angles\n", engines.curve, engines.curve_angles);
+  for (const EngineRun& run : engines.runs)
+    text += run.failure.empty()
+                ? fmt::format("{}: {}, tolerance {:g}\n", run.name, run.text, run.tolerance)
+                : run.failure + "\n";
+  const report::Table table = engine_table(engines);
+  std::vector<std::vector<std::string>> lines = {table.columns};
+  for (const auto& row : table.rows) {
+    lines.emplace_back();
+    for (const report::Cell& cell : row)
+      lines.back().push_back(std::holds_alternative<double>(cell)
+                                 ? fmt::format("{:g}", std::get<double>(cell))
+                                 : std::get<std::string>(cell));
+  }
+  for (const auto& line : lines) {
+    std::string one;
+    for (std::size_t column = 0; column < line.size(); ++column) {
+      std::size_t width = 0;
+      for (const auto& other : lines) width = std::max(width, other[column].size());
+      one += fmt::format("{:<{}}  ", line[column], width);
+    }
+    text += one.substr(0, one.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text;
+}
+
 // The verdict on a reference, its source, and what it says of each figure's reactions.
 void add_reference(report::Document& document, const Outcome& outcome) {
   document.verdict->reference = {outcome.name, held_text(outcome),
@@ -206,6 +302,7 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
     append(document.figures, teeth_figures(*r.teeth, the_case.pump));
   }
   document.runs->push_back(rounding_section(r.rounding));
+  if (r.engines) document.runs->insert(document.runs->begin(), engine_section(*r.engines));
   if (r.with) add_reference(document, *r.with);
   return document;
 }
@@ -255,6 +352,7 @@ std::string comparison_text(const ComparisonResult& r) {
   if (r.published)
     text += fmt::format("published numbers: {}\n", r.published->section.summary.text());
   if (r.with) text += "\n" + regression_text({*r.with});
+  if (r.engines) text += "\n" + engine_text(*r.engines);
   return text;
 }
 

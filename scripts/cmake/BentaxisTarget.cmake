@@ -61,6 +61,18 @@ function(bentaxis_library room)
   set_property(GLOBAL APPEND PROPERTY BENTAXIS_ROOMS ${room})
 endfunction()
 
+# What is linked with a large library is a file of its own, loaded when it is wanted (files/module_folders.h):
+#   bentaxis_module(<name> FOR <target> SOURCES <source>.. LIBRARIES <library>..)
+function(bentaxis_module name)
+  cmake_parse_arguments(ARG "" "FOR" "SOURCES;LIBRARIES" ${ARGN})
+  add_library(${name} MODULE ${ARG_SOURCES})
+  bentaxis_target(${name} 20)
+  set_target_properties(${name} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/modules)
+  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES})
+  add_dependencies(${ARG_FOR} ${name})
+  install(TARGETS ${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/bentaxis)
+endfunction()
+
 # Several modules under one name: what programs written for 1.0.0 link.
 #   bentaxis_umbrella(<name> <target>..)
 function(bentaxis_umbrella room)

@@ -88,6 +88,9 @@ class Maker {
         analytic::check_validity(r.first.the_case, r.first.the_case.analytic, samples_, r.analytic);
     warn();
     if (!r.options.with.empty()) hold_to_reference();
+    if (!r.options.engines.names.empty())
+      r.engines = compare_engines(r.first, r.options.engines, r.analytic, r.multibody, r.tolerance,
+                                  progress_of_);
     return std::move(result_);
   }
 
@@ -530,7 +533,8 @@ bool ComparisonResult::agrees() const {
 }
 
 bool ComparisonResult::passes() const {
-  return agrees() && (!with || with->state == Outcome::State::agrees);
+  return agrees() && (!with || with->state == Outcome::State::agrees) &&
+         (!engines || engines->agrees());
 }
 
 namespace {
@@ -690,6 +694,10 @@ ComparisonResult compare_models(Case analytic_case, std::optional<Case> multibod
                                 const ComparisonOptions& options, const PartProgress& progress_of) {
   if (!options.with.empty()) reference_in(options.with);  // refused before anything is computed
   if (multibody_case) check_same_run(analytic_case, *multibody_case);
+  check_engines(options.engines.names);
+  if (!options.engines.names.empty() && options.way != Way::driven)
+    throw InputError(
+        "--engine: must be left out beside --way integrated: engines run at given motion");
   require_memory(analytic_case, Kept::compared, options.way);
   PreparedCase first = prepare(std::move(analytic_case), progress_of);
   // The same case is solved once: both models get the very same curve.

@@ -1,5 +1,7 @@
 #include "bentaxis/study/reference_set.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <variant>
@@ -52,6 +54,18 @@ PreparedCase read(const compare::ReferenceDescription& description, const fs::pa
 }
 
 }  // namespace
+
+std::string differing_keys(const Case& theirs, const Case& ours) {
+  std::string text;
+  for (const InputEntry& here : ours.entries)
+    for (const InputEntry& entry : theirs.entries)
+      if (entry.table == here.table && entry.key == here.key && entry.value != here.value &&
+          !entry.table.empty() && entry.key != "file" && entry.key != "samples_per_revolution" &&
+          entry.key != "revolutions")
+        text += fmt::format("{}{}.{} = {} (here {})", text.empty() ? "" : ", ", entry.table,
+                            entry.key, entry.value, here.value);
+  return text;
+}
 
 compare::FrameAxes frames_of(const Case& the_case) {
   const double c = std::cos(the_case.pump.geometry.tilt), s = std::sin(the_case.pump.geometry.tilt);

@@ -243,14 +243,7 @@ Outcome hold_results(const std::filesystem::path& folder, const CaseOf& case_of,
   outcome.name = description.name;
   outcome.kind = compare::to_string(description.kind);
   hold_to_curves(description, case_of, result_of, outcome);
-  for (const InputEntry& ours : case_of(Model::analytic).entries)
-    for (const InputEntry& entry : theirs.entries)
-      if (entry.table == ours.table && entry.key == ours.key && entry.value != ours.value &&
-          !entry.table.empty() && entry.key != "file" && entry.key != "samples_per_revolution" &&
-          entry.key != "revolutions")
-        outcome.other_case +=
-            fmt::format("{}{}.{} = {} (here {})", outcome.other_case.empty() ? "" : ", ",
-                        entry.table, entry.key, entry.value, ours.value);
+  outcome.other_case = differing_keys(theirs, case_of(Model::analytic));
   if (!outcome.other_case.empty())
     outcome.notes.push_back("was made for another case: " + outcome.other_case);
   outcome.seconds = stopwatch.seconds();

@@ -16,6 +16,7 @@
 #include "bentaxis/study/budget.h"
 #include "bentaxis/study/case_description.h"
 #include "bentaxis/study/channel_choice.h"
+#include "bentaxis/study/engine_comparison.h"
 #include "bentaxis/study/lost_digits.h"
 #include "bentaxis/study/regression.h"
 #include "bentaxis/study/run.h"
@@ -42,7 +43,8 @@ struct ComparisonOptions {
   std::filesystem::path with;  ///< a reference to hold both models to as well; empty: none
   /// The cases differ in what drives the block: split from the difference as an assumption.
   bool split_transfer = false;
-  bool loads = false;  ///< all loads on the bodies too, of a driven run of full pumps
+  EngineOptions engines;  ///< of others to run beside the models; none: driven only
+  bool loads = false;     ///< all loads on the bodies too, of a driven run of full pumps
 };
 
 /// Assumptions in words: name and value.
@@ -84,15 +86,17 @@ struct ComparisonResult {
   MultibodyLosses losses;  ///< of a driven run
   std::vector<Warning> warnings;
   std::optional<compare::PublishedTable> published;
-  std::optional<Outcome> with;  ///< both models held to a reference
+  std::optional<Outcome> with;              ///< both models held to a reference
+  std::optional<EngineComparison> engines;  ///< where any were asked for
 
   bool checks_hold() const;
   /// The verdict: every check holds, no channel lacks a value it should have, and each difference,
   /// of the torque budgets too, is within tolerance, or where the models assume different things,
   /// what no assumption explains.
-  /// What a reference says is a verdict of its own (`with`).
+  /// What a reference or an engine says is a verdict of its own (`with`, `engines`).
   bool agrees() const;
-  /// That, and both models agree with the reference where there is one: what the exit status says.
+  /// That, and both models agree with the reference where there is one, and with the engines that
+  /// have given results: what the exit status says.
   bool passes() const;
   /// Why the models differ, where the round-off that was estimated for this case is at least a
   /// tenth of each difference: an estimate of the first order at some angles is no closer.

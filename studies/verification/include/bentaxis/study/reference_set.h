@@ -22,6 +22,10 @@ std::vector<ReferencePlace> references_below(const std::filesystem::path& root);
 /// Files that the cases of a reference use beside the case files themselves.
 std::vector<std::filesystem::path> files_of(const Case& the_case);
 
+/// Keys in which the case of a reference differs from another, with both values, of those that both
+/// have; "" where there are none. Names, files and how often a case is sampled do not count.
+std::string differing_keys(const Case& theirs, const Case& ours);
+
 /// The axes of the frames S1 and S2 of a case in S1, for curves given in other axes than ours.
 compare::FrameAxes frames_of(const Case& the_case);
 

@@ -1,0 +1,274 @@
+// The description of the pump for engines, and what comes of it: motion of the closed loops, the
+// twelve curves of 50 digits, faults planted in the description, modules that fail.
+#include <cstdlib>
+#include <functional>
+
+#include "bentaxis/engines/mechanism.h"
+#include "bentaxis/engines/run.h"
+#include "bentaxis/study/comparison.h"
+#include "bentaxis/study/engine_comparison.h"
+#include "support.h"
+#include "tree_motion.h"
+
+namespace bentaxis::test {
+namespace {
+
+using engines::Mechanism;
+
+Case rated(int samples) {
+  Case the_case = read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases/bap63_rated.toml");
+  the_case.operation.samples_per_revolution = samples;
+  return the_case;
+}
+
+Mechanism mechanism_of(const Case& the_case) {
+  const study::PreparedCase ready = study::prepare(the_case);
+  return engines::assemble(the_case, the_case.analytic, ready.samples(study::Way::driven));
+}
+
+// Both models and the engines at the case's samples.
+study::EngineComparison compared(const Case& the_case, const std::vector<std::string>& names,
+                                 const std::function<void(Mechanism&)>& change = {}) {
+  const study::PreparedCase ready = study::prepare(the_case);
+  study::EngineOptions options;
+  options.names = names;
+  options.curves = {reference_folder()};
+  options.change = change;
+  return study::compare_engines(ready, options, study::run_turn(ready, study::Model::analytic),
+                                study::run_turn(ready, study::Model::multibody), 1e-9);
+}
+
+class EachEngine : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    const engines::Answer answer =
+        engines::run_engine(GetParam(), mechanism_of(rated(1)), [](double) {});
+    if (answer.failure.find("is not installed") != std::string::npos)
+      GTEST_SKIP() << answer.failure;
+    ASSERT_EQ(answer.failure, "");
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, EachEngine, testing::ValuesIn(engines::known_engines()),
+                         [](const auto& engine) { return engine.param; });
+
+// Written down before the engines were run: 1e-9, as of Simbody (studies/verification).
+TEST_P(EachEngine, AgreesWithEveryCurveOf50Digits) {
+  for (const std::string& name : reference_cases()) {
+    const study::EngineComparison result = compared(reference_case(name), {GetParam()});
+    EXPECT_TRUE(result.agrees()) << name << ": " << result.headline();
+    EXPECT_EQ(result.curve, name);
+    EXPECT_GE(result.curve_angles, 72U) << name;
+    for (const study::EngineRow& row : result.rows) {
+      EXPECT_EQ(row.odd, "") << name << ", " << row.group;
+      EXPECT_EQ(row.curve.empty(), row.group == "Tcs") << name << ", " << row.group;
+    }
+    // What the engine has is not what both models have, to the bit.
+    EXPECT_NE(result.runs.front().table.values,
+              select_channels(
+                  study::run_turn(study::prepare(reference_case(name)), study::Model::analytic),
+                  [&](const Channel& channel) {
+                    return result.runs.front().table.find(channel.name) <
+                           result.runs.front().table.columns();
+                  })
+                  .values)
+        << name;
+  }
+}
+
+// Pistons that stand almost across their bores: the loop has a second solution close by.
+TEST_P(EachEngine, PistonsAcrossTheirBoresAreOnTheRightSide) {
+  for (const char* name : {"assembly_1e-2", "assembly_1e-6"}) {
+    const study::EngineComparison result = compared(
+        read_case(reference_folder().parent_path() / "hard" / name / "case.toml"), {GetParam()});
+    EXPECT_TRUE(result.agrees()) << name << ": " << result.headline();
+  }
+}
+
+// A fault in what engines are given is found by compare, in a reaction that it acts on.
+TEST_P(EachEngine, FaultsInTheDescriptionAreFound) {
+  const struct {
+    const char* fault;
+    std::function<void(Mechanism&)> plant;
+    const char* group;  // in which it is found; "": the description contradicts itself
+  } faults[] = {
+      {"shaft's centre of mass 1 mm off", [](Mechanism& m) { m.bodies[0].centre.z() += 1e-3; },
+       "Rb2"},
+      {"block's centre of mass 1 mm off", [](Mechanism& m) { m.bodies[1].centre.z() += 1e-3; },
+       "Th"},
+      {"a piston's centre of mass 1 mm off", [](Mechanism& m) { m.bodies[3].centre.z() += 1e-3; },
+       "Rc"},
+      {"a piston's inertia 1 % off", [](Mechanism& m) { m.bodies[2].inertia *= 1.01; }, "Rc"},
+      {"a piston heavier by a millionth", [](Mechanism& m) { m.bodies[2].mass *= 1 + 1e-6; }, "Rc"},
+      {"bent by a millionth more",
+       [](Mechanism& m) {
+         m.bodies[1].axes = Eigen::AngleAxisd(-1e-6, engines::Vector::UnitX()).toRotationMatrix() *
+                            m.bodies[1].axes;
+       },
+       ""},
+      {"weight along z",
+       [](Mechanism& m) {
+         m.gravity = {0, 0, -9.80665};
+       },
+       "Rb1"},
+      {"no acceleration of a slide",
+       [](Mechanism& m) {
+         for (auto& state : m.states) state.acceleration[2] = 0;
+       },
+       "Rs"},
+      {"tooth force 1 um off",
+       [](Mechanism& m) {
+         for (auto& state : m.states)
+           state.actions.back().tail<3>() +=
+               engines::Vector(1e-6, 0, 0).cross(engines::Vector(state.actions.back().head<3>()));
+       },
+       "Rb2"},
+      {"a pressure 1 ppm off",
+       [](Mechanism& m) {
+         for (auto& state : m.states) state.loads[4] *= 1 + 1e-6;
+       },
+       "Rs"},
+  };
+  const Case the_case = rated(72);
+  for (const auto& [fault, plant, group] : faults) {
+    const study::EngineComparison result = compared(the_case, {GetParam()}, plant);
+    if (std::string(group).empty()) {
+      ASSERT_EQ(result.failures().size(), 1U) << fault;
+      EXPECT_NE(result.failures().front().find("outside of their supports"), std::string::npos)
+          << fault;
+      continue;
+    }
+    ASSERT_TRUE(result.failures().empty()) << fault << ": " << result.failures().front();
+    EXPECT_FALSE(result.agrees()) << fault;
+    for (const study::EngineRow& row : result.rows)
+      if (row.group == group) {
+        EXPECT_EQ(row.odd, GetParam()) << fault << ", " << group;
+      }
+  }
+}
+
+TEST(Mechanisms, LoopsAreClosedInPositionVelocityAndAcceleration) {
+  for (const std::string& name : reference_cases()) {
+    const Case the_case = reference_case(name);
+    const Mechanism m = mechanism_of(the_case);
+    const double length = the_case.pump.geometry.piston_length;
+    const double speed = std::abs(rad_per_second(the_case.operation.speed_rpm)) + 1;
+    for (std::size_t row = 0; row < m.states.size(); row += 5) {
+      const engines::State& state = m.states[row];
+      std::vector<engines::FrameMotion> frames;
+      std::size_t next = 0;
+      for (const engines::Body& body : m.bodies) {
+        std::vector<engines::Coordinate> coordinates;
+        for (std::size_t i = 0; i < body.freedoms.size(); ++i, ++next)
+          coordinates.push_back(
+              {state.position[next], state.velocity[next], state.acceleration[next]});
+        frames.push_back(
+            engines::moved(body.parent < 0 ? engines::FrameMotion{} : frames[body.parent], body,
+                           coordinates.data()));
+      }
+      for (int k = 0; k < the_case.pump.geometry.pistons; ++k) {
+        const double angle = -2 * kPi * k / the_case.pump.geometry.pistons;
+        const engines::Vector on_shaft = the_case.pump.geometry.joint_circle_radius *
+                                         engines::Vector(-std::sin(angle), std::cos(angle), 0);
+        const engines::Vector on_piston(0, 0, -length);
+        const auto& piston = frames[2 + k];
+        // A hundred roundings of each.
+        EXPECT_LT((piston.point(on_piston) - frames[0].point(on_shaft)).norm(), 2e-14 * length);
+        EXPECT_LT((piston.velocity_of(on_piston) - frames[0].velocity_of(on_shaft)).norm(),
+                  2e-14 * speed * length);
+        EXPECT_LT((piston.acceleration_of(on_piston) - frames[0].acceleration_of(on_shaft)).norm(),
+                  1e-13 * speed * speed * length);
+        if (the_case.analytic.inertia == PistonInertia::real) {
+          EXPECT_NEAR(piston.turning.dot(piston.axes.col(2)), the_case.pump.piston.real->spin,
+                      1e-12 * speed);
+        }
+      }
+    }
+  }
+}
+
+// Velocities and accelerations of a tree against differences of its positions.
+TEST(Mechanisms, MotionOfATreeIsTheDerivativeOfItsPositions) {
+  engines::Body body;
+  body.place = {0.3, -0.2, 0.5};
+  body.axes = Eigen::AngleAxisd(0.7, engines::Vector(1, 2, 3).normalized()).toRotationMatrix();
+  body.freedoms = {
+      {false, {0.6, 0, 0.8}}, {true, {0, 1, 0}}, {true, {0.8, 0, 0.6}}, {false, {1, 0, 0}}};
+  const engines::Vector point(0.1, 0.4, -0.3);
+  const auto at = [&](double t) {
+    const engines::Coordinate turn{0.4 + 0.9 * t + 0.3 * t * t, 0.9 + 0.6 * t, 0.6};
+    engines::Body base;
+    base.freedoms = {{}};
+    std::vector<engines::Coordinate> coordinates;
+    for (int i = 0; i < 4; ++i)
+      coordinates.push_back(
+          {0.2 * i + (1 + i) * t - 0.2 * i * t * t, 1 + i - 0.4 * i * t, -0.4 * i});
+    return engines::moved(engines::moved({}, base, &turn), body, coordinates.data());
+  };
+  constexpr double h = 1e-4;  // error of central differences: about h^2, 1e-8 of values near 10
+  const auto before = at(-h), now = at(0), after = at(h);
+  const engines::Vector velocity = (after.point(point) - before.point(point)) / (2 * h);
+  const engines::Vector acceleration =
+      (after.velocity_of(point) - before.velocity_of(point)) / (2 * h);
+  const engines::Vector turning_rate = (after.turning - before.turning) / (2 * h);
+  EXPECT_LT((velocity - now.velocity_of(point)).norm(), 1e-5);
+  EXPECT_LT((acceleration - now.acceleration_of(point)).norm(), 1e-5);
+  EXPECT_LT((turning_rate - now.turning_rate).norm(), 1e-5);
+}
+
+TEST(Mechanisms, WhatTheyLackIsRefused) {
+  for (const char* name : {"bap63_cardan", "bap63_tapered_pistons", "bap63_teeth"}) {
+    const Case the_case = read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" /
+                                    (std::string(name) + ".toml"));
+    EXPECT_THROW(engines::assemble(the_case, the_case.analytic, {}), InputError) << name;
+  }
+  Case contact = rated(1);
+  contact.pump.piston.contact = 0.04;
+  EXPECT_THROW(engines::assemble(contact, contact.analytic, {}), InputError);
+}
+
+TEST(Modules, OneThatFailsIsNamedInALine) {
+  ASSERT_EQ(setenv("BENTAXIS_ENGINE_PATH", BENTAXIS_TEST_ENGINES, 1), 0);
+  const Mechanism m = mechanism_of(rated(2));
+  const std::pair<const char*, const char*> modules[] = {
+      {"crashes", "crashes: crashed (signal 6, Aborted): about to fail"},
+      {"leaves", "leaves: ended before it had answered (exit status 7)"},
+      {"old", "has interface 2, this program 1"},
+      {"says_nothing", "says_nothing: a faulty engine"},
+      {"no_library", "is no module of an engine"},
+      {"absent",
+       "absent: is not installed: there is no bentaxis_engine_absent.so beside the program "
+       "or in BENTAXIS_ENGINE_PATH"}};
+  for (const auto& [name, text] : modules) {
+    const engines::Answer answer = engines::run_engine(name, m, [](double) {});
+    EXPECT_NE(answer.failure.find(text), std::string::npos) << answer.failure;
+    EXPECT_EQ(answer.failure.find('\n'), std::string::npos);
+    EXPECT_EQ(engines::is_engine(name), std::string(name) != "absent");
+  }
+  EXPECT_FALSE(engines::is_engine("../crashes"));
+  EXPECT_FALSE(engines::is_engine(""));
+}
+
+TEST(Modules, AnInterruptedRunIsEnded) {
+  EXPECT_THROW(
+      engines::run_engine("crashes", mechanism_of(rated(2)), [](double) { throw Interrupted(); }),
+      Interrupted);
+}
+
+// One that gives zeros for all stands alone, by the curve and without one.
+TEST(Modules, AWrongOneStandsAlone) {
+  ASSERT_EQ(setenv("BENTAXIS_ENGINE_PATH", BENTAXIS_TEST_ENGINES, 1), 0);
+  for (const double more : {0.0, 1e-3}) {
+    Case the_case = rated(72);
+    the_case.pump.block.pin_z += more;
+    if (more != 0)  // no longer the case of the curve
+      for (InputEntry& entry : the_case.entries)
+        if (entry.key == "pin_z_mm") entry.value = "61";
+    const study::EngineComparison result = compared(the_case, {"gives_zero"});
+    EXPECT_EQ(result.curve.empty(), more != 0);
+    EXPECT_FALSE(result.agrees());
+    for (const study::EngineRow& row : result.rows) EXPECT_EQ(row.odd, "gives_zero") << row.group;
+  }
+}
+
+}  // namespace
+}  // namespace bentaxis::test
