@@ -49,6 +49,7 @@ Command add_uncertainty_command(CommandParser program);
 Command add_regress_command(CommandParser program);
 Command add_reference_command(CommandParser program);
 Command add_schema_command(CommandParser program);
+Command add_score_command(CommandParser program);
 Command add_show_command(CommandParser program);
 Command add_sensitivity_command(CommandParser program);
 Command add_simulate_command(CommandParser program);

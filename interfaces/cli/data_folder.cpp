@@ -25,4 +25,6 @@ std::optional<fs::path> shipped_reference_data() { return shipped_with_program("
 
 std::optional<fs::path> shipped_cases() { return shipped_with_program("cases"); }
 
+std::optional<fs::path> shipped_problems() { return shipped_with_program("problems"); }
+
 }  // namespace bentaxis::cli

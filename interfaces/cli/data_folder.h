@@ -12,7 +12,10 @@ namespace bentaxis::cli {
 std::optional<std::filesystem::path> shipped_reference_data();
 /// The folder cases, likewise.
 std::optional<std::filesystem::path> shipped_cases();
-/// The same of a folder "reference_data" or "cases" and any file that was installed with it.
+/// The folder problems, likewise.
+std::optional<std::filesystem::path> shipped_problems();
+/// The same of a folder "reference_data", "cases" or "problems" and any file that was installed
+/// with it.
 /// @param data_from_file  path of the installed data from the folder that the file is in
 std::optional<std::filesystem::path> shipped_folder(const std::string& name,
                                                     const std::filesystem::path& file,

@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "bentaxis/files/whole_file.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/words.h"
+#include "commands.h"
+#include "data_folder.h"
+#include "score_files.h"
+
+namespace bentaxis::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string file, problem, json, badge;
+  std::optional<double> tolerance;
+  bool list = false;
+};
+
+fs::path problems_folder() {
+  const auto folder = shipped_problems();
+  if (!folder) throw InputError("no problems are installed with this program: name a folder");
+  return *folder;
+}
+
+study::Problem problem_of(const std::string& text) {
+  const fs::path path = text;
+  std::error_code error;
+  if (path.has_parent_path() || fs::is_directory(path, error)) return study::read_problem(path);
+  const fs::path folder = problems_folder();
+  const auto names = study::problem_names(folder);
+  if (std::find(names.begin(), names.end(), text) == names.end())
+    throw InputError("--problem " + text + ": neither a directory nor a problem that is shipped" +
+                     suggestion(text, {names.begin(), names.end()}, "by `bentaxis score --list`"));
+  return study::read_problem(folder / text);
+}
+
+int list() {
+  std::vector<study::Problem> problems;
+  const fs::path folder = problems_folder();
+  for (const std::string& name : study::problem_names(folder))
+    problems.push_back(study::read_problem(folder / name));
+  std::printf("%s\nFolders: %s/NAME; text: problem.md, data: problem.toml, curves: curves.csv\n",
+              problems_text(problems).c_str(), folder.c_str());
+  return kDone;
+}
+
+int score(const Options& options) {
+  if (options.list) return list();
+  if (options.file.empty() || options.problem.empty())
+    throw InputError("score needs FILE and --problem NAME (names: bentaxis score --list)");
+  const study::Problem problem = problem_of(options.problem);
+  const study::Score result = study::score(problem, read_table(options.file), options.tolerance);
+  std::fputs(score_text(problem, result).c_str(), stdout);
+  if (!options.json.empty()) write_whole(options.json, score_json(problem, result, options.file));
+  if (!options.badge.empty()) write_whole(options.badge, score_badge(problem, result));
+  return result.verdict == study::Score::Verdict::solved ? kDone : kOutOfTolerance;
+}
+
+}  // namespace
+
+Command add_score_command(CommandParser program) {
+  auto options = std::make_shared<Options>();
+  CommandParser command = program.subcommand(
+      "score",
+      "Score a table of reactions that any program computed: digits of each column against a "
+      "problem of the problem set, and which known mistake a wrong column is");
+  command.option("file", options->file, "table of the results: CSV, Excel, MATLAB or ADAMS")
+      .text("[FILE]");
+  std::vector<std::string> names;
+  if (const auto folder = shipped_problems()) names = study::problem_names(*folder);
+  command
+      .option("--problem", options->problem,
+              "problem that the table solves: the name of a shipped one, or its folder")
+      .text("NAME|DIR")
+      .completed_with(names);
+  command
+      .option("--tolerance", options->tolerance,
+              "largest difference over the peak that counts as agreement (default: the problem's)")
+      .positive_number()
+      .text("NUMBER");
+  command.option("--json", options->json, "write the score as JSON (docs/problems.md)")
+      .text("FILE");
+  command.option("--badge", options->badge, "write a badge with the digits, an SVG picture")
+      .text("FILE");
+  command.flag("--list", options->list, "list the problems that come with the program");
+  return {command, [options] { return score(*options); }};
+}
+
+}  // namespace bentaxis::cli

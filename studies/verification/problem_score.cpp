@@ -1,0 +1,529 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <set>
+
+#include "bentaxis/compare/difference.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/unit_of_measure.h"
+#include "bentaxis/pump/words.h"
+#include "bentaxis/study/problem.h"
+
+namespace bentaxis::study {
+namespace {
+
+constexpr double kSameAngle = 1e-9;      // of the grid's unit: the same row
+constexpr std::size_t kManyPoints = 12;  // of an interpolation
+constexpr std::size_t kFewPoints = 8;    // of the one that tells its error
+constexpr double kWidestGapSteps = 30;   // between rows, in steps of the grid
+constexpr double kMostDigits = 16;       // a double has no more
+constexpr double kExact = 1e-12;         // two mistakes this near are not told apart
+
+// "Rb1_x1" and "N" of "Rb1_x1_N"; the unit is empty where the end of the name is none.
+struct NameParts {
+  std::string stem, unit;
+};
+
+NameParts parts_of(const std::string& name) {
+  std::size_t cut = name.rfind('_');
+  if (const std::size_t per = name.rfind("_per_"); per != std::string::npos && per > 0)
+    cut = name.rfind('_', per - 1);
+  if (cut == std::string::npos) return {name, ""};
+  std::string unit = name.substr(cut + 1);
+  if (const std::size_t per = unit.find("_per_"); per != std::string::npos)
+    unit.replace(per, 5, "/");
+  if (find_written_unit(unit) == nullptr && unit != "Ns") return {name, ""};
+  return {name.substr(0, cut), unit};
+}
+
+std::string in_lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return text;
+}
+
+// A column of theirs that stands for one of ours.
+struct Source {
+  std::size_t column = 0;
+  double factor = 1;  // ours = factor x theirs
+  std::string note;
+};
+
+class Matcher {
+ public:
+  explicit Matcher(const ForeignTable& table) : table_(table) {
+    for (std::size_t c = 0; c < table.header.size(); ++c) {
+      std::string name = table.header[c];
+      NameParts parts = parts_of(name);
+      if (const std::size_t bracket = name.find_first_of("[("); bracket != std::string::npos) {
+        parts.stem = name.substr(0, name.find_last_not_of(" _", bracket - 1) + 1);
+        parts.unit = c < table.units.size() ? table.units[c] : "";
+      } else if (parts.unit.empty() && c < table.units.size()) {
+        parts.unit = table.units[c];
+      }
+      parts_.push_back(parts);
+    }
+  }
+
+  // Where several columns fit, the one whose name is exact.
+  std::optional<Source> find(const std::string& ours) {
+    const NameParts wanted = parts_of(ours);
+    std::optional<Source> found;
+    for (std::size_t c = 0; c < table_.header.size(); ++c) {
+      if (table_.header[c] == ours) {
+        used_.insert(c);
+        return Source{c, 1, ""};
+      }
+      if (found || used_.count(c) > 0) continue;
+      if (in_lower_case(parts_[c].stem) != in_lower_case(wanted.stem)) continue;
+      if (parts_[c].unit.empty()) {
+        found = {c, 1, fmt::format("{} has no unit: taken as {}", table_.header[c], wanted.unit)};
+        continue;
+      }
+      const UnitOfMeasure* theirs = find_written_unit(parts_[c].unit);
+      const UnitOfMeasure* unit = find_written_unit(wanted.unit);
+      if (theirs == nullptr || unit == nullptr || !(theirs->dimension == unit->dimension)) continue;
+      const double factor = theirs->factor / unit->factor;
+      found = {
+          c, factor,
+          factor == 1 ? "" : fmt::format("{} is converted to {}", table_.header[c], unit->name)};
+    }
+    if (found) used_.insert(found->column);
+    return found;
+  }
+
+  // Columns of the table that stand for nothing.
+  std::vector<std::string> unused() const {
+    std::vector<std::string> names;
+    for (std::size_t c = 0; c < table_.header.size(); ++c)
+      if (used_.count(c) == 0) names.push_back(table_.header[c]);
+    return names;
+  }
+
+ private:
+  const ForeignTable& table_;
+  std::vector<NameParts> parts_;
+  std::set<std::size_t> used_;
+};
+
+// Place of a value on a grid: a row of it, or between rows.
+struct Place {
+  double x = 0;
+  std::optional<std::size_t> row;
+};
+
+class Grid {
+ public:
+  explicit Grid(const Problem& problem) : problem_(problem) {
+    step_ = problem.grid[1] - problem.grid[0];
+  }
+
+  // Nothing where the value is outside the grid.
+  std::optional<Place> place(double x) const {
+    const double first = problem_.grid.front();
+    if (problem_.period > 0) {
+      x -= problem_.period * std::floor((x - first) / problem_.period);
+      if (first + problem_.period - x <= kSameAngle) x = first;
+    }
+    const double nearest = std::round((x - first) / step_);
+    const auto count = static_cast<double>(problem_.grid.size());
+    if (nearest >= 0 && nearest < count &&
+        std::abs(x - problem_.grid[static_cast<std::size_t>(nearest)]) <=
+            kSameAngle * std::max(1.0, std::abs(x) * 1e-3))
+      return Place{x, static_cast<std::size_t>(nearest)};
+    const double last = problem_.period > 0 ? first + problem_.period : problem_.grid.back();
+    if (x < first || x > last) return std::nullopt;
+    return Place{x, std::nullopt};
+  }
+
+  // Value at a place between rows, and the error of that: Lagrange through the nearest rows.
+  std::pair<double, double> interpolated(const std::vector<double>& values, double x) const {
+    const double many = lagrange(values, x, kManyPoints), few = lagrange(values, x, kFewPoints);
+    return {many, std::abs(many - few)};
+  }
+
+  double step() const { return step_; }
+
+ private:
+  double lagrange(const std::vector<double>& values, double x, std::size_t points) const {
+    const auto count = static_cast<long>(values.size()), n = static_cast<long>(points);
+    long start = static_cast<long>(std::floor((x - problem_.grid.front()) / step_)) - n / 2 + 1;
+    if (problem_.period == 0) start = std::clamp(start, 0L, count - n);
+    double above = 0, below = 0, weight = 1;  // of equally spaced rows: binomial coefficients
+    for (long i = 0; i < n; ++i) {
+      const double at = problem_.grid.front() + step_ * static_cast<double>(start + i);
+      const double share = weight / (x - at);
+      above += share * values[static_cast<std::size_t>(((start + i) % count + count) % count)];
+      below += share;
+      weight *= -static_cast<double>(n - 1 - i) / static_cast<double>(i + 1);
+    }
+    return above / below;
+  }
+
+  const Problem& problem_;
+  double step_ = 1;
+};
+
+// One row of theirs that is compared.
+struct Row {
+  Place place;
+  std::size_t row = 0;  // of the table
+};
+
+// A curve that a wrong column may be, at the grid's rows where it is known.
+struct Candidate {
+  std::string says;
+  const KnownMistake* stored = nullptr;
+  std::map<std::size_t, double> distance;  // share of the peak, of wrong columns that it explains
+};
+
+class Scorer {
+ public:
+  Scorer(const Problem& problem, const ForeignTable& table, double tolerance)
+      : problem_(problem), table_(table), grid_(problem), matcher_(table) {
+    result_.tolerance = tolerance;
+  }
+
+  Score score() {
+    find_rows();
+    for (std::size_t c = 0; c < problem_.columns.size(); ++c) compare(c);
+    if (std::none_of(result_.columns.begin(), result_.columns.end(),
+                     [](const ColumnScore& one) { return one.rows > 0; }))
+      throw InputError(fmt::format("{}: has none of the columns that {} asks for: {}",
+                                   table_.file.string(), problem_.name, asked()));
+    say_gaps();
+    name_mistakes();
+    result_.verdict = verdict();
+    return std::move(result_);
+  }
+
+ private:
+  std::string asked() const {
+    std::string text;
+    for (const ProblemColumn& column : problem_.columns)
+      text += (text.empty() ? "" : ", ") + column.name;
+    return text;
+  }
+
+  void find_rows() {
+    const auto angle = matcher_.find(problem_.over);
+    if (!angle)
+      throw InputError(fmt::format("{}: has no column {} (or the same in another unit)",
+                                   table_.file.string(), problem_.over));
+    if (!angle->note.empty()) result_.gaps.push_back(angle->note);
+    std::set<std::size_t> covered;
+    std::size_t outside = 0;
+    for (std::size_t r = 0; r < table_.rows.size(); ++r) {
+      const double x = table_.rows[r][angle->column] * angle->factor;
+      const auto place = is_computed(x) ? grid_.place(x) : std::nullopt;
+      if (!place) {
+        ++outside;
+        continue;
+      }
+      if (place->row) covered.insert(*place->row);
+      if (place->row || problem_.smooth)
+        rows_.push_back({*place, r});
+      else
+        ++between_;
+      if (!place->row && problem_.smooth) ++resampled_;
+    }
+    result_.covered = covered.size();
+    if (rows_.empty())
+      throw InputError(fmt::format(
+          "{}: no row is at a value of {} that {} asks for ({} to {}, step {})",
+          table_.file.string(), problem_.over, problem_.name, number_text(problem_.grid.front()),
+          number_text(problem_.grid.back()), number_text(grid_.step())));
+    if (outside > 0)
+      result_.gaps.push_back(fmt::format(
+          "{} rows are left out: their {} is not within the problem's", outside, problem_.over));
+    if (between_ > 0)
+      result_.gaps.push_back(
+          fmt::format("{} rows are left out: they lie between the problem's angles, and its curves "
+                      "have corners",
+                      between_));
+    if (resampled_ > 0)
+      result_.gaps.push_back(fmt::format(
+          "{} rows are at other angles: compared with interpolated curves", resampled_));
+    say_holes();
+  }
+
+  // Stretches without rows.
+  void say_holes() {
+    std::vector<double> xs;
+    for (const Row& row : rows_) xs.push_back(row.place.x);
+    std::sort(xs.begin(), xs.end());
+    const double wide = resampled_ > 0 ? kWidestGapSteps * grid_.step() : 1.5 * grid_.step();
+    const double end =
+        problem_.period > 0 ? xs.front() + problem_.period : problem_.grid.back() + grid_.step();
+    std::vector<std::pair<double, double>> holes;
+    if (problem_.period == 0 && xs.front() - problem_.grid.front() > 0.5 * grid_.step())
+      holes.emplace_back(problem_.grid.front(), xs.front());
+    for (std::size_t i = 0; i < xs.size(); ++i) {
+      const double next = i + 1 < xs.size() ? xs[i + 1] : end;
+      if (next - xs[i] > wide) holes.emplace_back(xs[i], next);
+    }
+    complete_ = holes.empty();
+    if (complete_) return;
+    constexpr std::size_t kListed = 3;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(kListed, holes.size()); ++i)
+      text += fmt::format("{}{} and {}", i > 0 ? ", " : "", rounded_text(holes[i].first, 6),
+                          rounded_text(holes[i].second, 6));
+    if (holes.size() > kListed) text += fmt::format(", and {} more", holes.size() - kListed);
+    result_.gaps.push_back(fmt::format("rows at {} of {} angles; none between {} ({})",
+                                       result_.covered, problem_.grid.size(), text, problem_.over));
+  }
+
+  double value(const Row& row, std::size_t c) const {
+    return table_.rows[row.row][sources_[c]->column] * sources_[c]->factor;
+  }
+
+  std::pair<double, double> right(const Place& place, std::size_t c) const {
+    const auto& values = problem_.columns[c].values;
+    if (place.row) return {values[*place.row], 0};
+    return grid_.interpolated(values, place.x);
+  }
+
+  void compare(std::size_t c) {
+    const ProblemColumn& column = problem_.columns[c];
+    ColumnScore one;
+    one.column = c;
+    sources_.push_back(matcher_.find(column.name));
+    if (sources_[c] && !sources_[c]->note.empty()) result_.gaps.push_back(sources_[c]->note);
+    compare::Difference worst;
+    std::size_t empty = 0;
+    for (const Row& row : rows_) {
+      if (!sources_[c]) break;
+      const double theirs = value(row, c);
+      if (!is_computed(theirs)) {
+        ++empty;
+        continue;
+      }
+      const auto [known, error] = right(row.place, c);
+      const auto d =
+          compare::difference(std::max(0.0, std::abs(theirs - known) - error), 0, column.peak);
+      one.interpolation = std::max(one.interpolation, error / column.peak);
+      ++one.rows;
+      if (!worst.keep_larger(d)) continue;
+      one.largest = d.value;
+      one.at = row.place.x;
+      one.theirs = theirs;
+      one.right = known;
+    }
+    if (empty > 0 && one.rows > 0) {
+      result_.gaps.push_back(fmt::format("{} has no value in {} rows", column.name, empty));
+      complete_ = false;
+    }
+    if (one.rows > 0) {
+      const double share = std::max({one.largest / column.peak, one.interpolation, 1e-300});
+      one.digits = std::clamp(-std::log10(share), 0.0, kMostDigits);
+      one.state = one.largest <= result_.tolerance * column.peak ? ColumnScore::State::agrees
+                                                                 : ColumnScore::State::differs;
+    }
+    result_.columns.push_back(one);
+  }
+
+  void say_gaps() {
+    std::string missing;
+    std::set<std::string> wanted;
+    for (const ColumnScore& one : result_.columns)
+      if (one.state == ColumnScore::State::missing) {
+        const std::string& name = problem_.columns[one.column].name;
+        missing += (missing.empty() ? "" : ", ") + name;
+        wanted.insert(name);
+      }
+    if (!missing.empty()) result_.gaps.push_back("no column " + missing);
+    for (const std::string& name : matcher_.unused()) {
+      const auto near = meant(name, wanted, 0.7);
+      result_.gaps.push_back(
+          fmt::format("column {} is not asked for{}", name, near ? "; is it " + *near + "?" : ""));
+    }
+  }
+
+  // Largest distance of a wrong column from another curve, at rows where that is known; nothing
+  // where these are too few.
+  using Curve = std::function<std::optional<double>(std::size_t grid_row)>;
+  struct Distance {
+    double from_curve = 0, from_right = 0;
+  };
+  std::optional<Distance> distance(std::size_t c, const Curve& curve) const {
+    Distance d;
+    std::size_t count = 0;
+    const double peak = problem_.columns[c].peak;
+    for (const Row& row : rows_) {
+      if (!row.place.row) continue;
+      const double theirs = value(row, c);
+      const auto other = curve(*row.place.row);
+      if (!is_computed(theirs) || !other) continue;
+      d.from_curve = std::max(d.from_curve, std::abs(theirs - *other) / peak);
+      d.from_right = std::max(d.from_right,
+                              std::abs(theirs - problem_.columns[c].values[*row.place.row]) / peak);
+      ++count;
+    }
+    if (count < kNamedRows) return std::nullopt;
+    return d;
+  }
+
+  void consider(Candidate& candidate, std::size_t c, const Curve& curve) const {
+    const auto d = distance(c, curve);
+    if (d && d->from_curve <= kNamedWithin && d->from_curve * kNamedNearer <= d->from_right)
+      candidate.distance[c] = d->from_curve;
+  }
+
+  std::vector<std::size_t> wrong_columns() const {
+    std::vector<std::size_t> wrong;
+    for (const ColumnScore& one : result_.columns)
+      if (one.state == ColumnScore::State::differs) wrong.push_back(one.column);
+    return wrong;
+  }
+
+  std::vector<Candidate> candidates() const {
+    const std::vector<std::size_t> wrong = wrong_columns();
+    std::vector<Candidate> all;
+    const auto add = [&](const std::string& says, const auto& curve_of) {
+      Candidate candidate{says, nullptr, {}};
+      for (const std::size_t c : wrong) consider(candidate, c, curve_of(c));
+      if (!candidate.distance.empty()) all.push_back(std::move(candidate));
+    };
+    for (const KnownMistake& mistake : problem_.mistakes) {
+      Candidate candidate{mistake.says, &mistake, {}};
+      for (const auto& [c, values] : mistake.curves) {
+        if (std::count(wrong.begin(), wrong.end(), c) == 0) continue;
+        consider(candidate, c, [&](std::size_t row) -> std::optional<double> {
+          const auto at =
+              std::lower_bound(problem_.mistake_rows.begin(), problem_.mistake_rows.end(), row);
+          if (at == problem_.mistake_rows.end() || *at != row) return std::nullopt;
+          return values[static_cast<std::size_t>(at - problem_.mistake_rows.begin())];
+        });
+      }
+      if (!candidate.distance.empty()) all.push_back(std::move(candidate));
+    }
+    // What can happen to any column.
+    const auto scaled = [&](double factor) {
+      return [this, factor](std::size_t c) -> Curve {
+        return
+            [this, factor, c](std::size_t row) { return factor * problem_.columns[c].values[row]; };
+      };
+    };
+    add("opposite sign: the reaction on the other body", scaled(-1));
+    add("1000 times too large: a unit", scaled(1e3));
+    add("1000 times too small: a unit", scaled(1e-3));
+    add("degrees for radians", scaled(180 / std::numbers::pi));
+    add("radians for degrees", scaled(std::numbers::pi / 180));
+    if (problem_.period > 0) {
+      const auto moved = [&](double sign, double offset) {
+        return [this, sign, offset](std::size_t c) -> Curve {
+          return [this, sign, offset, c](std::size_t row) -> std::optional<double> {
+            const auto place = grid_.place(sign * problem_.grid[row] + offset);
+            if (!place || !place->row) return std::nullopt;
+            return problem_.columns[c].values[*place->row];
+          };
+        };
+      };
+      add("the angle counts in the other direction", moved(-1, 0));
+      for (const double offset : {90.0, 180.0, 270.0})
+        add(fmt::format("the angle is off by {} deg", offset > 180 ? -90.0 : offset),
+            moved(1, offset * problem_.period / 360));
+    }
+    for (std::size_t other = 0; other < problem_.columns.size(); ++other)
+      for (const double sign : {1.0, -1.0})
+        add(fmt::format("{}this is {}", sign < 0 ? "with opposite sign, " : "",
+                        problem_.columns[other].name),
+            [&](std::size_t c) -> Curve {
+              return [this, other, sign, c](std::size_t row) -> std::optional<double> {
+                if (other == c) return std::nullopt;
+                return sign * problem_.columns[other].values[row];
+              };
+            });
+    return all;
+  }
+
+  // The candidate that explains most columns comes first; of those that explain the same ones the
+  // nearest, with the others that are as near beside it.
+  void name_mistakes() {
+    std::vector<Candidate> all = candidates();
+    std::vector<std::size_t> wrong = wrong_columns();
+    const auto farthest = [](const Candidate& one) {
+      double largest = 0;
+      for (const auto& [c, d] : one.distance) largest = std::max(largest, d);
+      return largest;
+    };
+    while (!wrong.empty() && !all.empty()) {
+      for (Candidate& one : all)
+        std::erase_if(one.distance, [&](const auto& entry) {
+          return std::count(wrong.begin(), wrong.end(), entry.first) == 0;
+        });
+      std::stable_sort(all.begin(), all.end(), [&](const Candidate& a, const Candidate& b) {
+        if (a.distance.size() != b.distance.size()) return a.distance.size() > b.distance.size();
+        const bool whole_a = untouched(a).empty(), whole_b = untouched(b).empty();
+        if (whole_a != whole_b) return whole_a;
+        return farthest(a) < farthest(b);
+      });
+      const Candidate& best = all.front();
+      if (best.distance.empty()) break;
+      NamedMistake named{best.says, {}, farthest(best), {}, untouched(best)};
+      for (const auto& [c, d] : best.distance) named.columns.push_back(c);
+      for (std::size_t i = 1; i < all.size(); ++i) {
+        const bool same =
+            all[i].distance.size() == best.distance.size() &&
+            std::equal(all[i].distance.begin(), all[i].distance.end(), best.distance.begin(),
+                       [](const auto& a, const auto& b) { return a.first == b.first; });
+        if (same && untouched(all[i]).empty() == named.untouched.empty() &&
+            farthest(all[i]) <= kNamedNearer * std::max(named.distance, kExact))
+          named.or_else.push_back(all[i].says);
+      }
+      std::erase_if(wrong, [&](std::size_t c) {
+        return std::count(named.columns.begin(), named.columns.end(), c) > 0;
+      });
+      result_.mistakes.push_back(std::move(named));
+    }
+    result_.unexplained = wrong;
+  }
+
+  // Columns that a stored mistake changes, and that are right.
+  std::vector<std::size_t> untouched(const Candidate& candidate) const {
+    std::vector<std::size_t> columns;
+    if (candidate.stored != nullptr)
+      for (const auto& [c, values] : candidate.stored->curves)
+        if (result_.columns[c].state == ColumnScore::State::agrees) columns.push_back(c);
+    return columns;
+  }
+
+  Score::Verdict verdict() const {
+    bool all = complete_;
+    for (const ColumnScore& one : result_.columns) {
+      if (one.state == ColumnScore::State::differs) return Score::Verdict::wrong;
+      all = all && one.state == ColumnScore::State::agrees;
+    }
+    return all ? Score::Verdict::solved : Score::Verdict::incomplete;
+  }
+
+  const Problem& problem_;
+  const ForeignTable& table_;
+  Grid grid_;
+  Matcher matcher_;
+  std::vector<Row> rows_;
+  std::vector<std::optional<Source>> sources_;
+  std::size_t between_ = 0, resampled_ = 0;
+  bool complete_ = true;
+  Score result_;
+};
+
+}  // namespace
+
+double Score::digits() const {
+  double fewest = kMostDigits;
+  for (const ColumnScore& one : columns)
+    if (one.state != ColumnScore::State::missing) fewest = std::min(fewest, one.digits);
+  return fewest;
+}
+
+Score score(const Problem& problem, const ForeignTable& table, std::optional<double> tolerance) {
+  return Scorer(problem, table, tolerance.value_or(problem.tolerance)).score();
+}
+
+}  // namespace bentaxis::study
