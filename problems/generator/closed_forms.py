@@ -62,6 +62,8 @@ def pendulum(d, x, wrong=""):
         acceleration = l * alpha * y1
     force = d.mass * acceleration - (0 if wrong == "no_weight" else weight)
     change = product * alpha * x1 + (0 if wrong == "no_gyroscopic" else product * square * y1)
+    if wrong == "no_gyroscopic_at_centre":
+        change = change - d.product_xz * square * y1
     centre = l * x1 + h * Z
     moment = change - cross(centre, weight)
     if wrong == "about_centre":
@@ -336,18 +338,17 @@ def impacts(d, xs, wrong=""):
         if hit is None:
             break
         place, phase = place + speed * (hit - phase) / w, hit
-        wall_speed = mpf(0) if wrong == "wall_at_rest" else amplitude * w * mp.cos(phase)
+        if len(marks) > 40:
+            raise ValueError("impacts: the body comes to rest on a wall")
+        wall_speed = amplitude * w * mp.cos(phase)
         after = (1 + e) * wall_speed - e * speed
         if wrong == "elastic":
             after = 2 * wall_speed - speed
         if wrong == "restitution_squared":
             after = wall_speed - e * e * (speed - wall_speed)
-        if wrong == "wall_speed_once":
-            after = wall_speed - e * speed
-        sums[(found + 1) // 2] += mass * abs(after - speed)
+        impulse = mass * abs((wall_speed if wrong == "impulse_without_rebound" else after) - speed)
+        sums[1 if wrong == "one_sum" else (found + 1) // 2] += impulse
         speed = after
-        if wrong == "plastic_first" and len(marks) == 1:
-            speed = wall_speed
     rows = []
     for x in xs:
         p = rad(x)

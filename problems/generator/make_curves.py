@@ -3,6 +3,7 @@
 
     make_curves.py [NAME ..]            make the files of these problems (default: all)
     make_curves.py --check [NAME ..]    compute a few angles anew and compare with the files
+    make_curves.py --pages [NAME ..]    write the tables of problem.md from the files
 
 Files of a problem:
   curves.csv    every column at every angle, 40 digits, from the closed form with 50 (closed_forms.py)
@@ -152,7 +153,7 @@ def make(name, pool):
             spread[column] += d
 
     every = range(0, len(xs), MISTAKE_STEP)
-    header, columns, numbers = [over], [[repr(float(xs[i])) for i in every]], []
+    header, columns = [over], [[repr(float(xs[i])) for i in every]]
     for mistake in settings["mistake"]:
         wrong = closed_form(name, settings, [xs[i] for i in every] if name != "impacts" else xs, mistake["key"])
         wrong = wrong if name != "impacts" else [wrong[i] for i in every]
@@ -164,45 +165,57 @@ def make(name, pool):
             found = True
             header.append(f"{mistake['key']}:{column}")
             columns.append([text(row[column], MISTAKE_DIGITS) for row in wrong])
-            at = max(range(len(right)), key=lambda i: abs(right[i][column] - wrong[i][column]))
-            numbers.append((d, mistake, column, xs[every[at]], right[at][column], wrong[at][column]))
         if not found:
             raise Disagreement(f"{name}: mistake {mistake['key']} changes no column")
     folder = FOLDER / name
     write(folder / "curves.csv", [over] + [c["name"] for c in settings["column"]],
           [[repr(float(x))] + [text(row[c["name"]]) for c in settings["column"]] for x, row in zip(xs, rows)])
     write(folder / "mistakes.csv", header, zip(*columns))
-    tolerance = mpf(settings["tolerance"]) if isinstance(settings["tolerance"], Fraction) is False else mpf(settings["tolerance"].numerator) / settings["tolerance"].denominator
+    tolerance = Fraction(settings["tolerance"])
+    tolerance = mpf(tolerance.numerator) / tolerance.denominator
     checks = []
     for c in settings["column"]:
         s = spread[c["name"]]
         margin = mp.nstr(mp.log10(tolerance / s), 3) if s else ""
         checks.append([c["name"], text(peak[c["name"]], 17), str(known[c["name"]]), mp.nstr(s, 3), mp.nstr(tolerance, 3), margin])
     write(folder / "checks.csv", ["column", "peak", "digits", "spread_2ulp", "tolerance", "margin_decades"], checks)
-    page(folder, settings, checks, numbers, over)
+    page(name)
     print(f"{name}: {len(settings['column'])} columns at {len(xs)} angles, agree to {min(known.values())} digits, "
           f"spread {mp.nstr(max(spread.values()), 2)}, {len(settings['mistake'])} mistakes", flush=True)
 
 
 def short(x):
-    return mp.nstr(x, 6)
+    return mp.nstr(mpf(x), 6)
 
 
-def page(folder, settings, checks, numbers, over):
-    """Tables of problem.md between their marks."""
-    path = folder / "problem.md"
-    if not path.exists():
-        return
-    units = {c["name"]: c["name"].split("_")[-1] for c in settings["column"]}
+def stored(name, file):
+    with open(FOLDER / name / file, newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def page(name):
+    """Tables of problem.md between their marks, from the files."""
+    settings, path = settings_of(name), FOLDER / name / "problem.md"
+    over = settings["grid"]["column"]
+    curves = {row[over]: row for row in stored(name, "curves.csv")}
+    wrong_rows, checks = stored(name, "mistakes.csv"), stored(name, "checks.csv")
+    peak = {row["column"]: mpf(row["peak"]) for row in checks}
     asked = ["| column | meaning | on | by | at | frame |", "|---|---|---|---|---|---|"]
     asked += [f"| `{c['name']}` | {c['meaning']} | {c.get('on', '')} | {c.get('by', '')} | {c.get('at', '')} | {c.get('frame', '')} |"
               for c in settings["column"]]
-    known = ["| column | peak of its vector | digits | spread from 2 ulp | tolerance | margin, decades |", "|---|---|---|---|---|---|"]
-    known += [f"| `{n}` | {short(mpf(p))} | {d} | {s} | {t} | {m} |" for n, p, d, s, t, m in checks]
+    known = ["| column | peak | digits | spread from 2 ulp | tolerance | margin, decades |", "|---|---|---|---|---|---|"]
+    known += [f"| `{row['column']}` | {short(row['peak'])} | {row['digits']} | {row['spread_2ulp']} | {row['tolerance']} | {row['margin_decades']} |"
+              for row in checks]
     wrong = [f"| mistake | column that shows it most | {over} | right | wrong |", "|---|---|---|---|---|"]
     for mistake in settings["mistake"]:
-        _, _, column, x, right, bad = max((n for n in numbers if n[1] is mistake), key=lambda n: n[0])
-        wrong.append(f"| {mistake['says']} | `{column}` | {float(x):g} | {short(right)} | {short(bad)} |")
+        def difference(place):
+            row, column = place
+            return abs(mpf(row[f"{mistake['key']}:{column}"]) - mpf(curves[row[over]][column])) / peak[column]
+
+        changed = [c["name"] for c in settings["column"] if f"{mistake['key']}:{c['name']}" in wrong_rows[0]]
+        row, column = max(((row, column) for row in wrong_rows for column in changed), key=difference)
+        wrong.append(f"| {mistake['says']} | `{column}` | {float(row[over]):g} | {short(curves[row[over]][column])} "
+                     f"| {short(row[mistake['key'] + ':' + column])} |")
     content = path.read_text()
     for mark, lines in (("asked", asked), ("known", known), ("mistakes", wrong)):
         begin, end = f"<!-- {mark}: written by generator/make_curves.py -->", f"<!-- end of {mark} -->"
@@ -210,7 +223,10 @@ def page(folder, settings, checks, numbers, over):
             raise Disagreement(f"{path}: has no place for the table \"{mark}\"")
         before, rest = content.split(begin)
         content = before + begin + "\n" + "\n".join(lines) + "\n" + end + rest.split(end)[1]
-    path.write_text(content)
+    if content != path.read_text():
+        path.write_text(content)
+        return True
+    return False
 
 
 def check(name):
@@ -218,37 +234,35 @@ def check(name):
     settings = settings_of(name)
     xs = grid_of(settings)
     chosen = range(0, len(xs), len(xs) // CHECKED + 7)
-    with open(FOLDER / name / "curves.csv", newline="") as stream:
-        stored = list(csv.DictReader(stream))
-    if len(stored) != len(xs):
-        raise Disagreement(f"{name}: curves.csv has {len(stored)} rows, not {len(xs)}")
-    some = xs if name == "impacts" else [xs[i] for i in chosen]
-    rows = closed_form(name, settings, some)
-    second = second_derivation((name, settings, some))
-    agree(name, settings, some, rows, second)
-    peak = {c["name"]: mpf(c["peak"]) for c in csv.DictReader(open(FOLDER / name / "checks.csv", newline=""), fieldnames=None)} \
-        if False else None
-    with open(FOLDER / name / "checks.csv", newline="") as stream:
-        peak = {row["column"]: mpf(row["peak"]) for row in csv.DictReader(stream)}
-    held = [{c["name"]: mpf(stored[i][c["name"]]) for c in settings["column"]} for i in (range(len(xs)) if name == "impacts" else chosen)]
+    curves = stored(name, "curves.csv")
+    if len(curves) != len(xs):
+        raise Disagreement(f"{name}: curves.csv has {len(curves)} rows, not {len(xs)}")
+    chosen = range(len(xs)) if name == "impacts" else chosen
+    rows = closed_form(name, settings, [xs[i] for i in chosen])
+    agree(name, settings, xs, rows, second_derivation((name, settings, [xs[i] for i in chosen])))
+    peak = {row["column"]: mpf(row["peak"]) for row in stored(name, "checks.csv")}
+    held = [{c["name"]: mpf(curves[i][c["name"]]) for c in settings["column"]} for i in chosen]
     for key, d in largest(settings, rows, held, peak).items():
         if digits(d) < min(settings["digits"], WRITTEN - 1):
             raise Disagreement(f"{name}: {key}: curves.csv agrees with the closed form to {digits(d)} digits only")
-    print(f"ok {name}: {len(some)} angles", flush=True)
+    if page(name):
+        raise Disagreement(f"{name}: the tables of problem.md were not those of the files; they are written anew")
+    print(f"ok {name}: {len(rows)} angles", flush=True)
 
 
 def main():
     parser = argparse.ArgumentParser(description="Curves of the problem set.")
     parser.add_argument("names", nargs="*", help="problems (default: all)")
     parser.add_argument("--check", action="store_true", help="compute a few angles anew and compare with the files")
+    parser.add_argument("--pages", action="store_true", help="write the tables of problem.md from the files")
     parser.add_argument("--jobs", type=int, default=2, help="processes (default 2)")
     options = parser.parse_args()
     mp.dps = FIRST_DPS
     names = options.names or sorted(p.parent.name for p in FOLDER.glob("*/problem.toml"))
     try:
-        if options.check:
+        if options.check or options.pages:
             for name in names:
-                check(name)
+                (check if options.check else page)(name)
         else:
             with multiprocessing.Pool(options.jobs) as pool:
                 for name in names:
