@@ -9,6 +9,8 @@ Needs Python 3.11 and numpy.
 """
 import argparse
 
+import numpy
+
 from multiplier_models import MODELS, rows_of
 from multipliers import Numbers
 from problem_data import grid_of, settings_of, write_table
@@ -19,6 +21,7 @@ def main():
     parser.add_argument("name", nargs="?", choices=sorted(MODELS), metavar="NAME")
     parser.add_argument("-o", "--out", metavar="FILE")
     parser.add_argument("--list", action="store_true", help="print the problems that it solves")
+    parser.add_argument("--version", action="version", version=f"numpy {numpy.__version__}")
     options = parser.parse_args()
     if options.list:
         print("\n".join(sorted(MODELS)))
