@@ -182,7 +182,7 @@ class Result:
 
 def scratch_folder(root, folder):
     """What commands find: shipped cases and curves, and my.toml, which stands for the reader's own case."""
-    for name in ("cases", "reference_data"):
+    for name in ("cases", "reference_data", "problems"):
         shutil.copytree(root / name, folder / name)
     (folder / "docs").symlink_to(root / "docs")
     shutil.copyfile(root / "cases/bap63_rated.toml", folder / "my.toml")
