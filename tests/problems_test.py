@@ -320,9 +320,10 @@ class Derivations(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stdout.count("ok "), len(NAMES))
 
-    def test_drawings(self):
-        done = self.make("--check", program="generator/draw.py")
-        self.assertEqual(done.returncode, 0, done.stderr)
+    def test_drawings_and_models(self):
+        for program in ("generator/draw.py", "generator/models.py"):
+            done = self.make("--check", program=program)
+            self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_a_wrong_closed_form_is_refused(self):
         sys.path.insert(0, str(REPO / "problems/generator"))

@@ -77,11 +77,12 @@ std::string score_text(const study::Problem& problem, const study::Score& score)
       "the "
       "peak; at: {}\n",
       problem.over);
-  for (const auto& mistake : score.mistakes) text += "\nmistake: " + mistake_text(problem, mistake);
+  for (const auto& mistake : score.mistakes)
+    text += "mistake: " + mistake_text(problem, mistake) + "\n";
   if (!score.unexplained.empty())
-    text += "\nno known mistake: " + names(problem, score.unexplained);
-  for (const std::string& gap : score.gaps) text += "\ngap: " + gap;
-  return text + "\n\n" + verdict_text(problem, score) + "\n";
+    text += "no known mistake: " + names(problem, score.unexplained) + "\n";
+  for (const std::string& gap : score.gaps) text += "gap: " + gap + "\n";
+  return text + "\n" + verdict_text(problem, score) + "\n";
 }
 
 std::string score_json(const study::Problem& problem, const study::Score& score,
