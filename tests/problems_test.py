@@ -268,6 +268,12 @@ class Gaps(unittest.TestCase):
         self.assertGreater(column["digits"], 12)
         self.assertLess(column["interpolation"], 1e-12)
         self.assertIn("144 rows are at other angles: compared with interpolated curves", result["gaps"])
+        # Mistakes are named there too, and those of the program's own angles.
+        _, result = score(["theta_deg", "omega_rad_per_s"], [[x, -value] for x, value in zip(xs, omega)], "pendulum")
+        self.assertEqual(named(result), ["opposite sign: the reaction on the other body"])
+        weight = [1.5 * 9.80665 - 1.5 * 0.12 * (arm * math.sin(a)**2 / J - w**2 * math.cos(a)) for a, w in zip(map(math.radians, xs), omega)]
+        done, result = score(["theta_deg", "F_y0_N"], [[x, value - 1.5 * 9.80665] for x, value in zip(xs, weight)], "pendulum")
+        self.assertEqual([says[:24] for says in named(result)], ["the weight is missing in"], done.stdout)
         # With corners nothing is interpolated.
         header, rows = curves("step_friction")
         done, result = score(header, [[row[0] + (0.2 if i % 2 else 0), *row[1:]] for i, row in enumerate(rows)], "step_friction")

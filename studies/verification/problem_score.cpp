@@ -21,6 +21,7 @@ constexpr std::size_t kManyPoints = 12;  // of an interpolation
 constexpr std::size_t kFewPoints = 8;    // of the one that tells its error
 constexpr double kWidestGapSteps = 30;   // between rows, in steps of the grid
 constexpr double kMostDigits = 16;       // a double has no more
+constexpr double kKnownWithin = 1e-4;    // of the peak: an interpolated curve that names a mistake
 constexpr double kExact = 1e-12;         // two mistakes this near are not told apart
 
 // "Rb1_x1" and "N" of "Rb1_x1_N"; the unit is empty where the end of the name is none.
@@ -116,57 +117,68 @@ struct Place {
   std::optional<std::size_t> row;
 };
 
+// A value of a curve, and how far it may be off.
+struct Value {
+  double value = 0, error = 0;
+};
+
 class Grid {
  public:
-  explicit Grid(const Problem& problem) : problem_(problem) {
-    step_ = problem.grid[1] - problem.grid[0];
-  }
+  /// @param period  0: none
+  Grid(std::vector<double> values, double period)
+      : xs_(std::move(values)), period_(period), step_(xs_[1] - xs_[0]) {}
 
   // Nothing where the value is outside the grid.
   std::optional<Place> place(double x) const {
-    const double first = problem_.grid.front();
-    if (problem_.period > 0) {
-      x -= problem_.period * std::floor((x - first) / problem_.period);
-      if (first + problem_.period - x <= kSameAngle) x = first;
+    const double first = xs_.front();
+    if (period_ > 0) {
+      x -= period_ * std::floor((x - first) / period_);
+      if (first + period_ - x <= kSameAngle) x = first;
     }
     const double nearest = std::round((x - first) / step_);
-    const auto count = static_cast<double>(problem_.grid.size());
-    if (nearest >= 0 && nearest < count &&
-        std::abs(x - problem_.grid[static_cast<std::size_t>(nearest)]) <=
-            kSameAngle * std::max(1.0, std::abs(x) * 1e-3))
+    if (nearest >= 0 && nearest < static_cast<double>(xs_.size()) &&
+        std::abs(x - xs_[static_cast<std::size_t>(nearest)]) <= kSameAngle)
       return Place{x, static_cast<std::size_t>(nearest)};
-    const double last = problem_.period > 0 ? first + problem_.period : problem_.grid.back();
+    const double last = period_ > 0 ? first + period_ : xs_.back();
     if (x < first || x > last) return std::nullopt;
     return Place{x, std::nullopt};
   }
 
-  // Value at a place between rows, and the error of that: Lagrange through the nearest rows.
-  std::pair<double, double> interpolated(const std::vector<double>& values, double x) const {
-    const double many = lagrange(values, x, kManyPoints), few = lagrange(values, x, kFewPoints);
-    return {many, std::abs(many - few)};
+  // Value of a curve at a place, and its error where that is between rows: polynomials through the
+  // nearest ones.
+  Value at(const std::vector<double>& curve, const Place& place) const {
+    if (place.row) return {curve[*place.row], 0};
+    const double many = polynomial(curve, place.x, kManyPoints);
+    return {many, std::abs(many - polynomial(curve, place.x, kFewPoints))};
   }
 
   double step() const { return step_; }
 
  private:
-  double lagrange(const std::vector<double>& values, double x, std::size_t points) const {
-    const auto count = static_cast<long>(values.size()), n = static_cast<long>(points);
-    long start = static_cast<long>(std::floor((x - problem_.grid.front()) / step_)) - n / 2 + 1;
-    if (problem_.period == 0) start = std::clamp(start, 0L, count - n);
+  double polynomial(const std::vector<double>& curve, double x, std::size_t points) const {
+    const auto count = static_cast<long>(curve.size()), n = static_cast<long>(points);
+    long start = static_cast<long>(std::floor((x - xs_.front()) / step_)) - n / 2 + 1;
+    if (period_ == 0) start = std::clamp(start, 0L, count - n);
     double above = 0, below = 0, weight = 1;  // of equally spaced rows: binomial coefficients
     for (long i = 0; i < n; ++i) {
-      const double at = problem_.grid.front() + step_ * static_cast<double>(start + i);
+      const double at = xs_.front() + step_ * static_cast<double>(start + i);
       const double share = weight / (x - at);
-      above += share * values[static_cast<std::size_t>(((start + i) % count + count) % count)];
+      above += share * curve[static_cast<std::size_t>(((start + i) % count + count) % count)];
       below += share;
       weight *= -static_cast<double>(n - 1 - i) / static_cast<double>(i + 1);
     }
     return above / below;
   }
 
-  const Problem& problem_;
-  double step_ = 1;
+  std::vector<double> xs_;
+  double period_ = 0, step_ = 1;
 };
+
+std::vector<double> mistake_grid(const Problem& problem) {
+  std::vector<double> xs;
+  for (const std::size_t row : problem.mistake_rows) xs.push_back(problem.grid[row]);
+  return xs;
+}
 
 // One row of theirs that is compared.
 struct Row {
@@ -184,7 +196,11 @@ struct Candidate {
 class Scorer {
  public:
   Scorer(const Problem& problem, const ForeignTable& table, double tolerance)
-      : problem_(problem), table_(table), grid_(problem), matcher_(table) {
+      : problem_(problem),
+        table_(table),
+        grid_(problem.grid, problem.period),
+        mistakes_(mistake_grid(problem), problem.period),
+        matcher_(table) {
     result_.tolerance = tolerance;
   }
 
@@ -282,10 +298,8 @@ class Scorer {
     return table_.rows[row.row][sources_[c]->column] * sources_[c]->factor;
   }
 
-  std::pair<double, double> right(const Place& place, std::size_t c) const {
-    const auto& values = problem_.columns[c].values;
-    if (place.row) return {values[*place.row], 0};
-    return grid_.interpolated(values, place.x);
+  Value right(const Place& place, std::size_t c) const {
+    return grid_.at(problem_.columns[c].values, place);
   }
 
   void compare(std::size_t c) {
@@ -344,9 +358,9 @@ class Scorer {
     }
   }
 
-  // Largest distance of a wrong column from another curve, at rows where that is known; nothing
-  // where these are too few.
-  using Curve = std::function<std::optional<double>(std::size_t grid_row)>;
+  // Largest distance of a wrong column from another curve, at rows where that is known well enough;
+  // nothing where these are too few.
+  using Curve = std::function<std::optional<Value>(const Place& place)>;
   struct Distance {
     double from_curve = 0, from_right = 0;
   };
@@ -355,13 +369,14 @@ class Scorer {
     std::size_t count = 0;
     const double peak = problem_.columns[c].peak;
     for (const Row& row : rows_) {
-      if (!row.place.row) continue;
       const double theirs = value(row, c);
-      const auto other = curve(*row.place.row);
-      if (!is_computed(theirs) || !other) continue;
-      d.from_curve = std::max(d.from_curve, std::abs(theirs - *other) / peak);
-      d.from_right = std::max(d.from_right,
-                              std::abs(theirs - problem_.columns[c].values[*row.place.row]) / peak);
+      const auto other = is_computed(theirs) ? curve(row.place) : std::nullopt;
+      if (!other || other->error > kKnownWithin * peak) continue;
+      const auto from = [&](const Value& one) {
+        return std::max(0.0, std::abs(theirs - one.value) - one.error) / peak;
+      };
+      d.from_curve = std::max(d.from_curve, from(*other));
+      d.from_right = std::max(d.from_right, from(right(row.place, c)));
       ++count;
     }
     if (count < kNamedRows) return std::nullopt;
@@ -393,11 +408,10 @@ class Scorer {
       Candidate candidate{mistake.says, &mistake, {}};
       for (const auto& [c, values] : mistake.curves) {
         if (std::count(wrong.begin(), wrong.end(), c) == 0) continue;
-        consider(candidate, c, [&](std::size_t row) -> std::optional<double> {
-          const auto at =
-              std::lower_bound(problem_.mistake_rows.begin(), problem_.mistake_rows.end(), row);
-          if (at == problem_.mistake_rows.end() || *at != row) return std::nullopt;
-          return values[static_cast<std::size_t>(at - problem_.mistake_rows.begin())];
+        consider(candidate, c, [&](const Place& place) -> std::optional<Value> {
+          const auto there = mistakes_.place(place.x);
+          if (!there || (!there->row && !problem_.smooth)) return std::nullopt;
+          return mistakes_.at(values, *there);
         });
       }
       if (!candidate.distance.empty()) all.push_back(std::move(candidate));
@@ -405,8 +419,10 @@ class Scorer {
     // What can happen to any column.
     const auto scaled = [&](double factor) {
       return [this, factor](std::size_t c) -> Curve {
-        return
-            [this, factor, c](std::size_t row) { return factor * problem_.columns[c].values[row]; };
+        return [this, factor, c](const Place& place) {
+          const Value one = right(place, c);
+          return Value{factor * one.value, std::abs(factor) * one.error};
+        };
       };
     };
     add("opposite sign: the reaction on the other body", scaled(-1));
@@ -417,10 +433,10 @@ class Scorer {
     if (problem_.period > 0) {
       const auto moved = [&](double sign, double offset) {
         return [this, sign, offset](std::size_t c) -> Curve {
-          return [this, sign, offset, c](std::size_t row) -> std::optional<double> {
-            const auto place = grid_.place(sign * problem_.grid[row] + offset);
-            if (!place || !place->row) return std::nullopt;
-            return problem_.columns[c].values[*place->row];
+          return [this, sign, offset, c](const Place& place) -> std::optional<Value> {
+            const auto moved_to = grid_.place(sign * place.x + offset);
+            if (!moved_to || (!moved_to->row && !problem_.smooth)) return std::nullopt;
+            return right(*moved_to, c);
           };
         };
       };
@@ -434,9 +450,10 @@ class Scorer {
         add(fmt::format("{}this is {}", sign < 0 ? "with opposite sign, " : "",
                         problem_.columns[other].name),
             [&](std::size_t c) -> Curve {
-              return [this, other, sign, c](std::size_t row) -> std::optional<double> {
+              return [this, other, sign, c](const Place& place) -> std::optional<Value> {
                 if (other == c) return std::nullopt;
-                return sign * problem_.columns[other].values[row];
+                const Value one = right(place, other);
+                return Value{sign * one.value, one.error};
               };
             });
     return all;
@@ -504,7 +521,7 @@ class Scorer {
 
   const Problem& problem_;
   const ForeignTable& table_;
-  Grid grid_;
+  Grid grid_, mistakes_;
   Matcher matcher_;
   std::vector<Row> rows_;
   std::vector<std::optional<Source>> sources_;
