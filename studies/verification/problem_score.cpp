@@ -408,10 +408,10 @@ class Scorer {
       Candidate candidate{mistake.says, &mistake, {}};
       for (const auto& [c, values] : mistake.curves) {
         if (std::count(wrong.begin(), wrong.end(), c) == 0) continue;
-        consider(candidate, c, [&](const Place& place) -> std::optional<Value> {
+        consider(candidate, c, [this, &curve = values](const Place& place) -> std::optional<Value> {
           const auto there = mistakes_.place(place.x);
           if (!there || (!there->row && !problem_.smooth)) return std::nullopt;
-          return mistakes_.at(values, *there);
+          return mistakes_.at(curve, *there);
         });
       }
       if (!candidate.distance.empty()) all.push_back(std::move(candidate));
