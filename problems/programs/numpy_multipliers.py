@@ -1,8 +1,7 @@
-#!/usr/bin/env python3
 """All problems with numpy alone: rigid bodies, constraints, Lagrange multipliers, doubles.
 
-    numpy_multipliers.py NAME -o FILE.csv     then: bentaxis score FILE.csv --problem NAME
-    numpy_multipliers.py --list
+    python3 numpy_multipliers.py NAME -o FILE.csv     then: bentaxis score FILE.csv --problem NAME
+    python3 numpy_multipliers.py --list
 
 A template: replace rows_of() by what your engine computes, one dictionary of columns for each value of the grid.
 Needs Python 3.11 and numpy.
