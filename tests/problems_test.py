@@ -26,12 +26,11 @@ def run(*arguments):
 
 
 def score(header, rows, problem, *options):
-    """The score of a table, as JSON, with the run."""
-    file, out = FOLDER / "table.csv", FOLDER / "score.json"
-    out.unlink(missing_ok=True)
+    """The run that scores a table, and its JSON where there is one."""
+    file = FOLDER / "table.csv"
     file.write_text("\n".join([",".join(header)] + [",".join(map(repr, row)) for row in rows]) + "\n")
-    done = run("score", file, "--problem", problem, "--json", out, *options)
-    return done, json.loads(out.read_text()) if out.exists() else None
+    done = run("score", file, "--problem", problem, *options, "--json")
+    return done, json.loads(done.stdout) if done.stdout else None
 
 
 def curves(problem):
@@ -81,7 +80,8 @@ class Planted(unittest.TestCase):
         self.assertEqual(len(result["mistakes"]), 1, done.stdout)
         self.assertIn(words, named(result)[0], done.stdout)
         self.assertEqual(result["mistakes"][0]["or"], [])
-        self.assertIn(f"{named(result)[0]}", done.stdout)
+        text = run("score", FOLDER / "table.csv", "--problem", problem).stdout
+        self.assertIn(f"mistake: {', '.join(result['mistakes'][0]['columns'])}: {named(result)[0]} (within", text)
         if columns:
             self.assertEqual(result["mistakes"][0]["columns"], columns)
 
@@ -309,6 +309,7 @@ class Gaps(unittest.TestCase):
         listed = run("score", "--list").stdout
         for name in NAMES:
             self.assertIn(name, listed)
+        self.assertEqual([problem["name"] for problem in json.loads(run("score", "--list", "--json").stdout)], list(NAMES))
 
     def test_tolerance(self):
         header, rows = curves("pendulum")

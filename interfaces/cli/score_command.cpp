@@ -16,9 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string file, problem, json, badge;
+  std::string file, problem, badge;
   std::optional<double> tolerance;
-  bool list = false;
+  bool json = false, list = false;
 };
 
 fs::path problems_folder() {
@@ -39,24 +39,30 @@ study::Problem problem_of(const std::string& text) {
   return study::read_problem(folder / text);
 }
 
-int list() {
+int list(bool json) {
   std::vector<study::Problem> problems;
   const fs::path folder = problems_folder();
   for (const std::string& name : study::problem_names(folder))
     problems.push_back(study::read_problem(folder / name));
+  if (json) {
+    std::fputs(problems_json(problems).c_str(), stdout);
+    return kDone;
+  }
   std::printf("%s\nFolders: %s/NAME; text: problem.md, data: problem.toml, curves: curves.csv\n",
               problems_text(problems).c_str(), folder.c_str());
   return kDone;
 }
 
 int score(const Options& options) {
-  if (options.list) return list();
+  if (options.list) return list(options.json);
   if (options.file.empty() || options.problem.empty())
     throw InputError("score needs FILE and --problem NAME (names: bentaxis score --list)");
   const study::Problem problem = problem_of(options.problem);
   const study::Score result = study::score(problem, read_table(options.file), options.tolerance);
-  std::fputs(score_text(problem, result).c_str(), stdout);
-  if (!options.json.empty()) write_whole(options.json, score_json(problem, result, options.file));
+  std::fputs(
+      (options.json ? score_json(problem, result, options.file) : score_text(problem, result))
+          .c_str(),
+      stdout);
   if (!options.badge.empty()) write_whole(options.badge, score_badge(problem, result));
   return result.verdict == study::Score::Verdict::solved ? kDone : kOutOfTolerance;
 }
@@ -80,11 +86,11 @@ Command add_score_command(CommandParser program) {
       .completed_with(names);
   command
       .option("--tolerance", options->tolerance,
-              "largest difference over the peak that counts as agreement (default: the problem's)")
+              "largest difference over a reaction's peak that counts as agreement; default: the "
+              "problem's")
       .positive_number()
       .text("NUMBER");
-  command.option("--json", options->json, "write the score as JSON (docs/problems.md)")
-      .text("FILE");
+  command.flag("--json", options->json, "print JSON instead of text");
   command.option("--badge", options->badge, "write a badge with the digits, an SVG picture")
       .text("FILE");
   command.flag("--list", options->list, "list the problems that come with the program");
