@@ -306,10 +306,10 @@ class Gaps(unittest.TestCase):
         text = "".join(xml.etree.ElementTree.parse(badge).getroot().itertext())
         self.assertIn("bentaxis pendulum", text)
         self.assertIn("16.0 digits", text)
-        listed = run("score", "--list").stdout
+        listed = run("problems").stdout
         for name in NAMES:
             self.assertIn(name, listed)
-        self.assertEqual([problem["name"] for problem in json.loads(run("score", "--list", "--json").stdout)], list(NAMES))
+        self.assertEqual([problem["name"] for problem in json.loads(run("problems", "--json").stdout)], list(NAMES))
 
     def test_tolerance(self):
         header, rows = curves("pendulum")

@@ -44,6 +44,7 @@ Command add_optimise_command(CommandParser program);
 Command add_outputs_command(CommandParser program);
 Command add_paper_command(CommandParser program);
 Command add_pressure_command(CommandParser program);
+Command add_problems_command(CommandParser program);
 Command add_rattle_command(CommandParser program);
 Command add_uncertainty_command(CommandParser program);
 Command add_regress_command(CommandParser program);

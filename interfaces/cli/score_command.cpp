@@ -18,45 +18,23 @@ namespace fs = std::filesystem;
 struct Options {
   std::string file, problem, badge;
   std::optional<double> tolerance;
-  bool json = false, list = false;
+  bool json = false;
 };
-
-fs::path problems_folder() {
-  const auto folder = shipped_problems();
-  if (!folder) throw InputError("no problems are installed with this program: name a folder");
-  return *folder;
-}
 
 study::Problem problem_of(const std::string& text) {
   const fs::path path = text;
   std::error_code error;
   if (path.has_parent_path() || fs::is_directory(path, error)) return study::read_problem(path);
-  const fs::path folder = problems_folder();
-  const auto names = study::problem_names(folder);
+  const auto folder = shipped_problems();
+  if (!folder) throw InputError("no problems are installed with this program: name a folder");
+  const auto names = study::problem_names(*folder);
   if (std::find(names.begin(), names.end(), text) == names.end())
     throw InputError("--problem " + text + ": neither a directory nor a problem that is shipped" +
-                     suggestion(text, {names.begin(), names.end()}, "by `bentaxis score --list`"));
-  return study::read_problem(folder / text);
-}
-
-int list(bool json) {
-  std::vector<study::Problem> problems;
-  const fs::path folder = problems_folder();
-  for (const std::string& name : study::problem_names(folder))
-    problems.push_back(study::read_problem(folder / name));
-  if (json) {
-    std::fputs(problems_json(problems).c_str(), stdout);
-    return kDone;
-  }
-  std::printf("%s\nFolders: %s/NAME; text: problem.md, data: problem.toml, curves: curves.csv\n",
-              problems_text(problems).c_str(), folder.c_str());
-  return kDone;
+                     suggestion(text, {names.begin(), names.end()}, "by `bentaxis problems`"));
+  return study::read_problem(*folder / text);
 }
 
 int score(const Options& options) {
-  if (options.list) return list(options.json);
-  if (options.file.empty() || options.problem.empty())
-    throw InputError("score needs FILE and --problem NAME (names: bentaxis score --list)");
   const study::Problem problem = problem_of(options.problem);
   const study::Score result = study::score(problem, read_table(options.file), options.tolerance);
   std::fputs(
@@ -76,13 +54,15 @@ Command add_score_command(CommandParser program) {
       "Score a table of reactions that any program computed: digits of each column against a "
       "problem of the problem set, and which known mistake a wrong column is");
   command.option("file", options->file, "table of the results: CSV, Excel, MATLAB or ADAMS")
-      .text("[FILE]");
+      .text("FILE")
+      .required();
   std::vector<std::string> names;
   if (const auto folder = shipped_problems()) names = study::problem_names(*folder);
   command
       .option("--problem", options->problem,
               "problem that the table solves: the name of a shipped one, or its folder")
       .text("NAME|DIR")
+      .required()
       .completed_with(names);
   command
       .option("--tolerance", options->tolerance,
@@ -93,7 +73,6 @@ Command add_score_command(CommandParser program) {
   command.flag("--json", options->json, "print JSON instead of text");
   command.option("--badge", options->badge, "write a badge with the digits, an SVG picture")
       .text("FILE");
-  command.flag("--list", options->list, "list the problems that come with the program");
   return {command, [options] { return score(*options); }};
 }
 
