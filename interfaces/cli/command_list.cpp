@@ -26,7 +26,9 @@ const std::vector<Group>& groups() {
         {add_hardcases_command, "bentaxis hardcases --filter zero_tilt --out hardcases"},
         {add_tradeoff_command,
          "bentaxis tradeoff bap63_rated --accuracies 1e-3 --max-seconds-per-run 1 --out tradeoff"},
-        {add_score_command, "bentaxis score out/analytic.csv --problem pump_lumped"},
+        {add_score_command,
+         "bentaxis score out/analytic.csv --problem pump_lumped    # after: bentaxis compare "
+         "bap63_rated"},
         {add_index_command, "bentaxis index ."}}},
       {"Simulate",
        {{add_run_command, "bentaxis run bap63_rated --model analytic --channels Rs,Td --out run"},

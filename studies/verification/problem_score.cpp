@@ -351,11 +351,19 @@ class Scorer {
         wanted.insert(name);
       }
     if (!missing.empty()) result_.gaps.push_back("no column " + missing);
-    for (const std::string& name : matcher_.unused()) {
-      const auto near = meant(name, wanted, 0.7);
-      result_.gaps.push_back(
-          fmt::format("column {} is not asked for{}", name, near ? "; is it " + *near + "?" : ""));
+    constexpr std::size_t kListed = 4;
+    std::string others;
+    const std::vector<std::string> unused = matcher_.unused();
+    for (std::size_t i = 0; i < unused.size(); ++i) {
+      const auto near = meant(unused[i], wanted, 0.7);
+      if (near)
+        result_.gaps.push_back(
+            fmt::format("column {} is not asked for; is it {}?", unused[i], *near));
+      else if (i < kListed)
+        others += (others.empty() ? "" : ", ") + unused[i];
     }
+    if (unused.size() > kListed) others += fmt::format(" .. ({} columns)", unused.size());
+    if (!others.empty()) result_.gaps.push_back("not asked for: " + others);
   }
 
   // Largest distance of a wrong column from another curve, at rows where that is known well enough;
