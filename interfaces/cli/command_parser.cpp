@@ -318,8 +318,7 @@ ProgramParser::ProgramParser(const Texts& texts)
 ProgramParser::~ProgramParser() = default;
 
 // The argument by the option's present name. Says on standard error that it has one.
-std::string ProgramParser::with_new_names(const std::string& command,
-                                          const std::string& argument) {
+std::string ProgramParser::with_new_names(const std::string& command, const std::string& argument) {
   const std::size_t end = std::min(argument.find('='), argument.size());
   const auto found = renamed_.find({command, argument.substr(0, end)});
   if (found == renamed_.end()) return argument;
