@@ -1,5 +1,8 @@
 // The description of the pump for engines, and what comes of it: motion of the closed loops, the
 // twelve curves of 50 digits, faults planted in the description, modules that fail.
+#include <sys/wait.h>
+
+#include <cerrno>
 #include <cstdlib>
 #include <functional>
 
@@ -248,10 +251,17 @@ TEST(Modules, OneThatFailsIsNamedInALine) {
   EXPECT_FALSE(engines::is_engine(""));
 }
 
+// Whether it computes on and on or has ended already; no process is left.
 TEST(Modules, AnInterruptedRunIsEnded) {
-  EXPECT_THROW(
-      engines::run_engine("crashes", mechanism_of(rated(2)), [](double) { throw Interrupted(); }),
-      Interrupted);
+  ASSERT_EQ(setenv("BENTAXIS_ENGINE_PATH", BENTAXIS_TEST_ENGINES, 1), 0);
+  for (const char* name : {"waits", "crashes"}) {
+    EXPECT_THROW(
+        engines::run_engine(name, mechanism_of(rated(2)), [](double) { throw Interrupted(); }),
+        Interrupted)
+        << name;
+    EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
+    EXPECT_EQ(errno, ECHILD);
+  }
 }
 
 // One that gives zeros for all stands alone, by the curve and without one.
