@@ -215,6 +215,28 @@ TEST(Rattle, CriterionIsThatOfASearchByBruteForce) {
 }
 
 // Against the trajectory of analytic::simulate, another method: half a turn of impacts.
+// Of pistons: the wall force with which one piston would carry what a constant-velocity joint does.
+// A wall acts at D, where the axis of the piston moves by 1 - l_c/b1 of what the bore turns.
+TEST(Rattle, CriterionOfPistonsIsTheForceOfOneThatCarriesAlone) {
+  Case the_case = read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" /
+                            "bap63_tapered_pistons.toml");
+  const Case at_point = study::rattle_case(the_case, 1200, 150);
+  const auto [least, greatest] = study::rigid_extremes(study::prepare(at_point));
+  Case joint = at_point;
+  joint.pump.transfer.kind = TransferKind::constant_velocity;
+  joint.operation.samples_per_revolution = 7 * 720;
+  const ResultTable table = study::run_turn(study::prepare(joint), study::Model::analytic);
+  const std::size_t couple = table.find("Tcs_z2_Nm");
+  double low = 1e300, high = -1e300;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    low = std::min(low, table.at(row, couple));
+    high = std::max(high, table.at(row, couple));
+  }
+  const double arm = 0.022 * (1 - 24.0 / 46.0);  // m: Rd, l_c and b1 of the case
+  EXPECT_NEAR(least, low / arm, scaled(1e-4) * std::abs(high / arm));
+  EXPECT_NEAR(greatest, high / arm, scaled(1e-4) * std::abs(high / arm));
+}
+
 TEST(Rattle, TheWatchSeesWhatASimulationSees) {
   Case c = read_case(kCases / "bap63_tooth_rattle.toml");
   c.drive->duration = 0.004;

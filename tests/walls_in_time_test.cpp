@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include "bentaxis/analytic/mechanics.h"
 #include "bentaxis/analytic/simulation.h"
@@ -12,6 +13,7 @@
 #include "bentaxis/coupled/prescribed_oil.h"
 #include "bentaxis/coupled/simulation.h"
 #include "bentaxis/coupled/stepper.h"
+#include "bentaxis/coupled/tooth_watch.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/hydraulics/oil_in_time.h"
 #include "bentaxis/multibody/mechanics.h"
@@ -254,6 +256,47 @@ TEST(WallsUnderPressure, TouchesAreThoseOfTheAnalyticSimulation) {
     EXPECT_NEAR(x[i].approach_speed, y[i].approach_speed, scaled(1e-5)) << i;
   }
   EXPECT_NEAR(a.record.share_out_of_contact, b.record.share_out_of_contact, 0.02);
+}
+
+// Times on either side, apart and how often a piston left, from the list of touches alone.
+TEST(WallsUnderPressure, WatchAddsUpTheTouchesOfAllPistons) {
+  const Case the_case = free_pistons();
+  const Trajectory run = prescribed(the_case, 1e-10);
+  const double end = the_case.drive->duration;
+  coupled::ToothStretch wanted;
+  std::map<int, int> side;  // of the pistons that touch
+  double since = 0;
+  const auto pass = [&](double until) {
+    const auto any = [&](int wanted_side) {
+      return std::any_of(side.begin(), side.end(),
+                         [&](const auto& one) { return one.second == wanted_side; });
+    };
+    if (any(1)) wanted.plus += until - since;
+    if (any(-1)) wanted.minus += until - since;
+    if (side.empty()) wanted.apart += until - since;
+    since = until;
+  };
+  for (const ToothEvent& event : run.record.events) {
+    pass(event.time_s);
+    wanted.separations += event.touch ? 0 : 1;
+    if (event.touch)
+      side[event.piston] = event.flank;
+    else
+      side.erase(event.piston);
+  }
+  pass(end);
+  const PressureTrace pressure(the_case.pressure);
+  const auto oil = coupled::prescribed_oil(7, pressure, the_case.pressure.ports);
+  const auto mechanics = mechanics_of(the_case, false);
+  coupled::ToothWatch watch("analytic", *mechanics, *oil, 1e-10, 1e-3);
+  watch.start(mechanics->start());
+  const coupled::ToothStretch found = watch.run_to(end);
+  EXPECT_GT(wanted.separations, 10);
+  EXPECT_GT(wanted.apart, 0.01 * end);
+  EXPECT_EQ(found.separations, wanted.separations);
+  EXPECT_NEAR(found.apart, wanted.apart, scaled(1e-6) * end);
+  EXPECT_NEAR(found.plus, wanted.plus, scaled(1e-6) * end);
+  EXPECT_NEAR(found.minus, wanted.minus, scaled(1e-6) * end);
 }
 
 TEST(WallsWithOil, BothModelsMoveAlike) {
