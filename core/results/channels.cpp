@@ -59,6 +59,9 @@ std::vector<Channel> list_channels(int pistons, TransferKind transfer) {
         list[place.column(pistons, k, i)] =
             describe(kQuantities[q], kQuantities[q].components[i], place.repeated ? k + 1 : 0);
   }
+  for (Channel& channel : list)
+    channel.of_pump = !is_of_given_motion(channel) &&
+                      (channel.quantity != "Rcs" || transfer == TransferKind::gear);
   return list;
 }
 

@@ -113,20 +113,11 @@ void for_each_tooth_value(const Trajectory& run, std::size_t row, const Use& use
   for (const double flank : force) use(Compared{"tooth force", "N", true}, flank);
 }
 
-// Nothing from outside turns the block of a simulation. A pump without a gear has no tooth force:
-// its column is there, and empty.
-bool is_of_pump(const ResultTable& table, const Channel& channel) {
-  if (channel.quantity != "Rcs") return !is_of_given_motion(channel);
-  return std::none_of(table.channels.begin(), table.channels.end(), [](const Channel& other) {
-    return other.quantity == "Rw" || (other.quantity == "Tcs" && other.axis == "x2");
-  });
-}
-
 template <class Use>
 void for_each_value(const Trajectory& run, std::size_t row, const Use& use) {
   const ResultTable& table = run.table.results;
   for (std::size_t c = 0; c < table.columns(); ++c)
-    if (table.channels[c].kind == ChannelKind::reaction && is_of_pump(table, table.channels[c]))
+    if (table.channels[c].kind == ChannelKind::reaction && table.channels[c].of_pump)
       use(Compared{table.channels[c].group, table.channels[c].unit, true}, table.at(row, c));
   if (!run.teeth.empty()) for_each_tooth_value(run, row, use);
   if (!run.oil) return;

@@ -212,11 +212,6 @@ bool computes(const RunOptions& options, const Assumptions& assumptions, const C
          multibody::computes(options.scene.scene, channel);
 }
 
-bool exists_at_constant_speed(const PumpParameters& pump, const Channel& channel) {
-  if (channel.quantity == "Rcs") return pump.transfer.kind == TransferKind::gear;
-  return channel.quantity != "Tb";
-}
-
 void stream_analytic(const PreparedCase& ready, const Assumptions& assumptions,
                      const std::function<bool(const Channel&)>& wanted, OutputFolder::Stream& out,
                      const RowVisitor& visit, const PartProgress& progress_of) {

@@ -271,12 +271,9 @@ bool Maker::may_be_missing(const Channel& channel, std::size_t row) const {
   const auto has = [&](const PreparedCase& ready) {
     const auto& all = ChannelLayout(ready.the_case.pump).channels();
     return std::any_of(all.begin(), all.end(),
-                       [&](const Channel& c) { return c.name == channel.name; });
+                       [&](const Channel& c) { return c.of_pump && c.name == channel.name; });
   };
-  if (r.options.split_transfer && !(has(r.first) && has(r.second))) return true;
-  if (!exists_at_constant_speed(r.first.the_case.pump, channel) ||
-      !exists_at_constant_speed(r.second.the_case.pump, channel) ||
-      !computes({}, r.first.the_case.analytic, channel) ||
+  if (!has(r.first) || !has(r.second) || !computes({}, r.first.the_case.analytic, channel) ||
       !computes(multibody_run(0), r.second.the_case.multibody, channel))
     return true;
   if (channel.quantity != "xh" && channel.quantity != "yh") return false;

@@ -43,8 +43,7 @@ void compare_models_and_scenes(InertiaStudy& s) {
                             multibody::Scene scene) {
       const RunOptions options{.model = Model::multibody, .scene = {scene, {}}};
       const auto computed = [&](const Channel& channel) {
-        return exists_at_constant_speed(s.the_case.pump, channel) &&
-               computes(options, s.the_case.analytic, channel);
+        return channel.of_pump && computes(options, s.the_case.analytic, channel);
       };
       return largest_difference(first, second, computed, least, radius);
     };

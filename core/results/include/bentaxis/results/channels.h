@@ -26,6 +26,9 @@ struct Channel {
   double unit_in_si = 1;  ///< SI value of one unit
   std::string group;      ///< channels that share one peak: the components of one vector
   ChannelKind kind = ChannelKind::reaction;
+  /// Whether a pump that moves by itself has it. Not so: the tooth force Rcs without a gear, the
+  /// torque Tb on the block from outside.
+  bool of_pump = true;
 };
 
 /// Whether a channel has values at given states of motion alone: the torque on the block from

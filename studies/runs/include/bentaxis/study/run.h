@@ -122,10 +122,6 @@ ResultTable run_turn(const PreparedCase& ready, Model model,
 /// speed is imposed there is no tooth force.
 bool computes(const RunOptions& options, const Assumptions& assumptions, const Channel& channel);
 
-/// Whether a pump at constant speed has the quantity of a channel: no tooth force Rcs without a
-/// gear, no torque Tb from outside where the block's motion is not given.
-bool exists_at_constant_speed(const PumpParameters& pump, const Channel& channel);
-
 /// Runs the analytic model over one turn and writes its curves as CSV, row by row: memory does not
 /// grow with the number of samples. Only channels that are wanted.
 void stream_analytic(const PreparedCase& ready, const Assumptions& assumptions,
