@@ -17,12 +17,13 @@ namespace {
 class Rows {
  public:
   Rows(Mechanics& mechanics, const Oil& oil, const System& system, const SystemState& start,
-       Trajectory& trajectory, bool body_loads)
+       Trajectory& trajectory, const Options& options)
       : mechanics_(mechanics),
         oil_(oil),
         system_(system),
         trajectory_(trajectory),
-        body_loads_(body_loads) {
+        body_loads_(options.body_loads),
+        balances_(options.balances) {
     kinetic_ = mechanics.kinetic_energy(0, start.motion);
     potential_ = mechanics.elastic_energy(0, start.motion);
     work_of_loads_ = start.motion[kWorkOfLoads];
@@ -48,6 +49,8 @@ class Rows {
       trajectory_.teeth.push_back(action);
     if (body_loads_) trajectory_.loads.append(mechanics_.body_loads(time, s.motion, loads_));
 
+    if (trajectory_.oil) add_oil(time, s, integrals);
+    if (!balances_) return;
     TrajectoryRecord& record = trajectory_.record;
     record.work_of_loads = s.motion[kWorkOfLoads] - work_of_loads_;
     record.work_of_drives = s.motion[kWorkOfDrive] - work_of_drive_;
@@ -56,7 +59,6 @@ class Rows {
     record.work_residual = record.work_of_loads + record.work_of_drives -
                            record.kinetic_energy_gained - record.potential_energy_gained;
     update_max_abs(record.worst_work_residual, record.work_residual);
-    if (trajectory_.oil) add_oil(time, s, integrals);
   }
 
  private:
@@ -71,6 +73,7 @@ class Rows {
     history.values.resize(history.values.size() + columns);
     oil_.row(time, mechanics_.shaft(time, s.motion), mechanics_.block(time, s.motion), s.oil.data(),
              history.values.data() + history.values.size() - columns);
+    if (integrals.empty()) return;
     double energy = 0, mass = 0;
     stored(time, s, energy, mass);
     history.energy_gained = energy - energy_;
@@ -96,7 +99,7 @@ class Rows {
   const Oil& oil_;
   const System& system_;
   Trajectory& trajectory_;
-  bool body_loads_;
+  bool body_loads_, balances_;
   double kinetic_ = 0, potential_ = 0, work_of_loads_ = 0, work_of_drive_ = 0;
   double energy_ = 0, mass_ = 0;
   OilLoads loads_;
@@ -117,10 +120,10 @@ Trajectory tabulate(const std::string& name, Mechanics& mechanics, Oil& oil, con
   const Stopwatch watch;
   Trajectory trajectory;
   trajectory.table = trajectory_table(name, mechanics.layout(), drive);
-  HybridIntegrator course(name, mechanics, oil, tolerance, true);
+  HybridIntegrator course(name, mechanics, oil, tolerance, options.balances);
   course.start(0, start);
   course.foresee(times.back());
-  Rows rows(mechanics, oil, course.system(), start, trajectory, options.body_loads);
+  Rows rows(mechanics, oil, course.system(), start, trajectory, options);
   SystemState at = start;
   std::vector<double> integrals;
   const double end = times.back();

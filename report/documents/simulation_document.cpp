@@ -379,7 +379,9 @@ report::Section effort_section(const SimulationResult& r) {
   section.title = "Speed against error";
   section.text =
       "Largest error of any reaction, of its peak, in the compared time: of the analytic model "
-      "against its tightest run, of Simbody against the analytic model.";
+      "against its tightest run, of Simbody against the analytic model. Runs that tell the error "
+      "of "
+      "another one are made beside it: either takes somewhat longer than alone.";
   for (const auto& [name, run] : runs_of(r))
     section.facts.emplace_back(name + ": chosen", run->record.choice);
   if (!r.multibody_choice.empty())

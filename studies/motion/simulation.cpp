@@ -10,12 +10,14 @@
 #include "bentaxis/analytic/simulation.h"
 #include "bentaxis/hydraulics/oil_in_time.h"
 #include "bentaxis/multibody/simulation.h"
+#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/load_scale.h"
 #include "bentaxis/results/max_abs.h"
 #include "bentaxis/study/achieved_error.h"
+#include "bentaxis/study/reporting.h"
 #include "coupled_pump.h"
 #include "simulation_pieces.h"
 
@@ -305,18 +307,44 @@ class Study {
   void run_coupled() {
     const bool analytic = r_.choice.only != Model::multibody;
     const Model first = analytic ? Model::analytic : Model::multibody;
+    const std::string wanted = r_.oil_follows ? "with oil" : "motion";
     double tolerance = this->tolerance();
-    Trajectory loose = integrate(first, kLooser * tolerance, "looser");
-    Trajectory run = integrate(first, tolerance, r_.oil_follows ? "with oil" : "motion");
+    Trajectory run, loose, disturbed;
+    r_.disturbance = kDisturbanceWithOil;
+    // The growth needs no balances, and no finer steps where the disturbance is far above their
+    // error.
+    constexpr double kFarAbove = 1e3;
+    const bool coarse = kFarAbove * kLooser * tolerance <= (1 + kOneTime) * r_.disturbance;
+    const auto run_beside = [&](const CoupledPump& pump, const Progress& before,
+                                const Progress& after) {
+      coupled::Options options = options_for(kLooser * tolerance);
+      loose = follow(pump, first, options, before);
+      options = options_for(coarse ? kLooser * tolerance : tolerance);
+      options.disturbance = r_.disturbance;
+      options.balances = false;
+      disturbed = follow(pump, first, options, after);
+    };
+    if (r_.choice.unit) {
+      run_beside(*pump_, part(first, "looser"), part(first, "sensitivity"));
+      run = integrate(first, tolerance, part(first, wanted));
+    } else {
+      const CoupledPump other(r_.ready, r_.oil_follows);
+      constexpr double kLooserRun = 0.6;  // of the time of both
+      SlowestOf progress(2, part(first, wanted));
+      numerics::parallel_for(2, 2, [&](std::size_t job) {
+        if (job == 0)
+          run = integrate(first, tolerance, progress.of(0));
+        else
+          run_beside(other, progress.of(1, 0, kLooserRun), progress.of(1, kLooserRun, 1));
+      });
+    }
     keep_scales(run);
-    coupled::Options disturbed = options_for(tolerance);
-    r_.disturbance = disturbed.disturbance = kDisturbanceWithOil;
-    note_growth(run, follow(first, disturbed, "sensitivity"));
+    note_growth(coarse ? loose : run, disturbed);
     const auto error = [&] { return change_of(loose, run) / kChangeOverError; };
     while (error() > 1 && tolerance > kFinestStep) {
       tolerance = std::max(kFinestStep, tolerance / kLooser);
       loose = std::move(run);
-      run = integrate(first, tolerance, "tighter");
+      run = integrate(first, tolerance, part(first, "tighter"));
     }
     r_.integration_change = apart(run, loose);
     r_.checks.push_back(
@@ -325,6 +353,7 @@ class Study {
          error(), 0, 1, 1});
     add_effort(first, kLooser * tolerance, loose, r_.integration_change);
     add_effort(first, tolerance, run, r_.integration_change / kChangeOverError);
+    tolerance_ = tolerance;
     if (r_.choice.unit) note_coupling(first, run);
     if (!analytic) {
       r_.multibody = std::move(run);
@@ -332,7 +361,7 @@ class Study {
     }
     r_.analytic = std::move(run);
     if (r_.choice.only == Model::analytic) return;
-    r_.multibody = integrate(Model::multibody, tolerance, r_.oil_follows ? "with oil" : "motion");
+    r_.multibody = integrate(Model::multibody, tolerance, part(Model::multibody, wanted));
     add_effort(Model::multibody, tolerance, *r_.multibody, apart(*r_.analytic, *r_.multibody));
     r_.multibody_choice = fmt::format(
         "Simbody's accelerations at every state, integrated as the analytic model's, "
@@ -340,18 +369,22 @@ class Study {
         tolerance);
   }
 
-  Trajectory integrate(Model model, double tolerance, const std::string& part) const {
+  Progress part(Model model, const std::string& name) const {
+    return progress_of_(to_string(model) + ", " + name);
+  }
+
+  Trajectory integrate(Model model, double tolerance, const Progress& progress) const {
     std::shared_ptr<UnitRecord>& record = r_.exchanged[static_cast<int>(model)];
     if (r_.choice.unit) record = std::make_shared<UnitRecord>();
     coupled::Options options = options_for(tolerance, 1, record);
-    tolerance_ = tolerance;
     options.body_loads = true;
-    return follow(model, options, to_string(model) + ", " + part);
+    return follow(*pump_, model, options, progress);
   }
 
   // The instances of a unit go with the run that they were for.
-  Trajectory follow(Model model, const coupled::Options& options, const std::string& part) const {
-    Trajectory run = pump_->simulate(model, options, progress_of_(part));
+  Trajectory follow(const CoupledPump& pump, Model model, const coupled::Options& options,
+                    const Progress& progress) const {
+    Trajectory run = pump.simulate(model, options, progress);
     if (r_.choice.unit) r_.choice.unit->end_instances();
     return run;
   }
@@ -368,7 +401,8 @@ class Study {
   // What exchanging values at points alone has changed: from a run with points between them.
   void note_coupling(Model model, const Trajectory& run) {
     const coupled::Options options = options_for(tolerance_, 2);
-    const Trajectory half = follow(model, options, "half the communication step");
+    const Trajectory half =
+        follow(*pump_, model, options, part(model, "half the communication step"));
     for (const GroupDifference& g : group_differences(
              run, half, nullptr, scales_, std::vector<double>(judged_rows(), r_.choice.error)))
       r_.coupling.push_back({g.group, g.unit, g.peak, g.in_time, g.time_s});
@@ -468,23 +502,27 @@ class Study {
     add_effort(Model::analytic, options.error, *r_.analytic, apart(truth, *r_.analytic));
   }
 
-  Trajectory multibody(double accuracy) const {
+  static std::string multibody_part(double accuracy) {
+    return fmt::format("multibody, accuracy {:g}", accuracy);
+  }
+
+  Trajectory multibody(double accuracy, const Progress& progress) const {
     SimulationOptions options;
     options.error = r_.choice.error;
     options.accuracy = accuracy;
     options.body_loads = true;
     multibody::SimulationMethod method;
     method.integrator = r_.choice.integrator;
-    return multibody::simulate(
-        r_.ready.the_case, r_.ready.assumptions(Model::multibody), r_.ready.pressure, options,
-        progress_of_(fmt::format("multibody, accuracy {:g}", accuracy)), method);
+    return multibody::simulate(r_.ready.the_case, r_.ready.assumptions(Model::multibody),
+                               r_.ready.pressure, options, progress, method);
   }
 
   void run_multibody() {
     const std::string name =
         multibody::integrator_names()[static_cast<std::size_t>(r_.choice.integrator)];
     if (r_.choice.accuracy) {
-      r_.multibody = multibody(*r_.choice.accuracy);
+      const double accuracy = *r_.choice.accuracy;
+      r_.multibody = multibody(accuracy, progress_of_(multibody_part(accuracy)));
       r_.multibody_choice = fmt::format("{}, accuracy {:g} as asked", name, *r_.choice.accuracy);
       add_multibody(*r_.choice.accuracy, *r_.multibody);
       return;
@@ -495,11 +533,18 @@ class Study {
     constexpr double kStep = 10, kMargin = 0.3, kUsualPower = 0.75, kTightest = 1e-12;
     double loose = kStep * multibody::accuracy_for(r_.choice.error);
     double tight = loose / kStep;
-    Trajectory before = multibody(loose);
+    Trajectory before;
+    SlowestOf progress(2, progress_of_(multibody_part(tight)));
+    numerics::parallel_for(2, 2, [&](std::size_t job) {
+      if (job == 0)
+        r_.multibody = multibody(tight, progress.of(0));
+      else
+        before = multibody(loose, progress.of(1));
+    });
     add_multibody(loose, before);
     double left = 0;  // error of the tighter run, of what is allowed
     for (int runs = 2;; ++runs) {
-      r_.multibody = multibody(tight);
+      if (runs > 2) r_.multibody = multibody(tight, progress_of_(multibody_part(tight)));
       add_multibody(tight, *r_.multibody);
       const double change = change_of(before, *r_.multibody);
       left = change / (std::pow(loose / tight, kUsualPower) - 1);
@@ -587,7 +632,8 @@ class Study {
     if (!pump_) return analytic(options, "analytic, over the angle");
     coupled::Options with_oil = options_for(tolerance_);
     with_oil.times = options.times;
-    return follow(Model::analytic, with_oil, "analytic, over the angle");
+    with_oil.balances = false;
+    return follow(*pump_, Model::analytic, with_oil, part(Model::analytic, "over the angle"));
   }
 
   void check() {
@@ -658,7 +704,7 @@ class Study {
   const PartProgress& progress_of_;
   std::map<std::string, double> scales_;  // by group, of the run that is the measure
   std::optional<CoupledPump> pump_;       // with oil, or for a periodic motion
-  mutable double tolerance_ = 0;          // of its last run
+  double tolerance_ = 0;                  // of its run
 };
 
 // What changes in time leaves no motion that repeats itself.

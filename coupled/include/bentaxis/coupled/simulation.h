@@ -42,6 +42,8 @@ struct Options {
   /// Moves the start by this share of each state's scale.
   double disturbance = 0;
   bool body_loads = false;  ///< Trajectory::loads too
+  /// Of simulate(): works, energies and masses too. Without them a run costs less.
+  bool balances = true;
   /// Of simulate(): acts from outside as far as mechanics and oil take it. Rows at communication
   /// points are those under what acts from then on.
   std::optional<Exchange> exchange;

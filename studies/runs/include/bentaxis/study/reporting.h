@@ -1,10 +1,12 @@
 // How far jobs that run side by side are.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/study/progress.h"
@@ -36,6 +38,26 @@ class Reporting {
   }
   std::mutex mutex_;
   std::size_t all_, done_ = 0;
+  Progress progress_;
+};
+
+/// One progress of jobs that run side by side: that of the one which is furthest behind.
+class SlowestOf {
+ public:
+  SlowestOf(std::size_t jobs, Progress progress) : done_(jobs), progress_(std::move(progress)) {}
+
+  /// Progress of a part of a job: from .. to of the whole job.
+  Progress of(std::size_t job, double from = 0, double to = 1) {
+    return [=, this](double fraction) {
+      const std::lock_guard lock(mutex_);
+      done_[job] = from + fraction * (to - from);
+      if (progress_) progress_(*std::min_element(done_.begin(), done_.end()));
+    };
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<double> done_;
   Progress progress_;
 };
 
