@@ -92,15 +92,14 @@ class Period : public numerics::Equations {
       for (int i = 0; i < network_.place_count(); ++i) dq[i] = power[static_cast<Place>(i)] * work;
       return;
     }
-    std::fill(dq, dq + kIntegrals, 0.0);
-    const double mass = network_.seconds_per_degree() / mass_scale_;
-    for (int k = 0; k < network_.pistons(); ++k) {
-      dq[0] += flows_.suction[k] * mass;
-      dq[1] += flows_.delivery[k] * mass;
-      dq[2] += flows_.leakage[k] * mass;
-    }
-    dq[3] = flows_.load * mass;
-    dq[4] = flows_.power * network_.seconds_per_degree() / work_scale_;
+    Integrals rates;
+    rates.add(flows_, network_.seconds_per_degree() / mass_scale_,
+              network_.seconds_per_degree() / work_scale_);
+    dq[0] = rates.suction;
+    dq[1] = rates.delivery;
+    dq[2] = rates.leakage;
+    dq[3] = rates.load;
+    dq[4] = rates.work;
   }
 
   Integrals in_units(const double* q) const {
@@ -126,6 +125,33 @@ const char* text_of(numerics::IntegrationFailure::Reason reason) {
 }
 
 }  // namespace
+
+void Integrals::add(const Flows& flows, double seconds_of_mass, double seconds_of_work) {
+  for (std::size_t k = 0; k < flows.suction.size(); ++k) {
+    suction += flows.suction[k] * seconds_of_mass;
+    delivery += flows.delivery[k] * seconds_of_mass;
+    leakage += flows.leakage[k] * seconds_of_mass;
+  }
+  load += flows.load * seconds_of_mass;
+  work += flows.power * seconds_of_work;
+}
+
+void summarize(const Network& network, const Integrals& over_period, Summary& summary) {
+  const int n = network.pistons();
+  const int way = network.backwards() ? -1 : 1;
+  const double density = network.fluid().state(network.suction_log_pressure()).density;
+  const double time = network.period_deg() * network.seconds_per_degree();
+  summary.density = density;
+  summary.displacement = network.displacement();
+  summary.ideal_flow = way * summary.displacement / (n * time);
+  summary.mass_flow = over_period.load / time;
+  summary.flow = summary.mass_flow / density;
+  summary.volumetric_efficiency = summary.flow / summary.ideal_flow;
+  summary.leakage = over_period.leakage / time / density;
+  summary.work = way * over_period.work * n;
+  summary.mass_in = over_period.suction * n;
+  summary.mass_out = (over_period.delivery + over_period.leakage) * n;
+}
 
 std::string sundials_version() { return numerics::sundials_version(); }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "bentaxis/hydraulics/steady_state.h"
 #include "bentaxis/pump/error.h"
 #include "network.h"
 
@@ -13,7 +14,12 @@ namespace bentaxis::hydraulics {
 struct Integrals {
   double suction = 0, delivery = 0, leakage = 0, load = 0;
   double work = 0;  ///< of the pistons on the oil, gauge pressure
+  /// What flows for some seconds, masses and work each in a unit of its own.
+  void add(const Flows& flows, double seconds_of_mass, double seconds_of_work);
 };
+
+/// Of a summary what integrals over a period say: displacement, density, flows, masses and work.
+void summarize(const Network& network, const Integrals& over_period, Summary& summary);
 
 /// The integration does not get through the period from here; from elsewhere it may.
 class IntegrationFailure : public ComputationError {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 #include "integrator.h"
@@ -21,7 +22,11 @@ using Matrix = Eigen::MatrixXd;
 // The equations of two neighbours.
 struct Pair {
   Pair(const Neighbours& of, const Network& network)
-      : above(of.above), below(of.below), apart(of.apart) {
+      : kept_above(std::make_shared<const Network>(of.above)),
+        kept_below(std::make_shared<const Network>(of.below)),
+        above(*kept_above),
+        below(*kept_below),
+        apart(of.apart) {
     for (const Network* other : {&above, &below})
       if (other->size() != network.size() || other->states() != network.states() ||
           other->pistons() != network.pistons() || other->backwards() != network.backwards() ||
@@ -38,7 +43,8 @@ struct Pair {
   double difference(const F& f) const {
     return (f(above) - f(below)) / apart;
   }
-  Network above, below;
+  std::shared_ptr<const Network> kept_above, kept_below;
+  const Network &above, &below;
   double apart;
 };
 
@@ -67,6 +73,58 @@ std::vector<Passage> passages_of(const Network& network, std::span<const double>
   return places;
 }
 
+// A point of the period where what flows is integrated over it: two of each step, Gauss's.
+struct Node {
+  double x = 0, width = 0;  // degrees, those that it stands for
+  Vector state;
+  Matrix by;  // by start, ln load size and parameters
+};
+
+void add_nodes(const Integrator::Step& step, int size, Eigen::Index columns,
+               std::vector<Node>& nodes) {
+  static const double kGauss = 0.5 / std::sqrt(3.0);
+  const double width = step.to - step.from;
+  for (const double place : {0.5 - kGauss, 0.5 + kGauss}) {
+    Node node;
+    node.x = step.from + place * width;
+    node.width = width / 2;
+    node.by = Eigen::Map<const Matrix>(step.sensitivities(node.x).data(), size, columns);
+    node.state = Eigen::Map<const Vector>(step.state(node.x), size);
+    nodes.push_back(std::move(node));
+  }
+}
+
+// Means over the period of one neighbour, with the state and the load moved a little.
+class MeansOf {
+ public:
+  MeansOf(std::shared_ptr<const Network> network, double load_size)
+      : network_(std::move(network)), load_size_(load_size) {}
+  void add(const Node& node, const Vector& state) {
+    network_->flows(node.x, state.data(), load_size_, flows_);
+    const double seconds = node.width * network_->seconds_per_degree();
+    integrals_.add(flows_, seconds, seconds);
+    const PowerBudget power = network_->power(node.x, state.data(), flows_);
+    for (int i = 0; i < network_->place_count(); ++i)
+      power_[static_cast<Place>(i)] +=
+          power[static_cast<Place>(i)] * node.width / network_->period_deg();
+  }
+  SteadyState state(double delivery_mean) const {
+    SteadyState result;
+    summarize(*network_, integrals_, result.summary);
+    result.summary.delivery_mean = delivery_mean;
+    result.equations = network_;
+    return result;
+  }
+  const PowerBudget& power() const { return power_; }
+
+ private:
+  std::shared_ptr<const Network> network_;
+  double load_size_;
+  Network::Flows flows_;
+  Integrals integrals_;
+  PowerBudget power_;
+};
+
 // ln P of a chamber at an angle, and its derivatives by start, ln load size and parameters.
 struct Sample {
   double s = 0;
@@ -87,7 +145,8 @@ bool has_rates(const SteadyState& state, const Neighbours& parameter) {
 std::vector<PressureRates> pressure_rates(const SteadyState& state,
                                           std::span<const Neighbours> parameters,
                                           std::span<const double> theta_k_deg, double tolerance,
-                                          const Progress& progress) {
+                                          const Progress& progress,
+                                          std::vector<NeighbourMeans>* means) {
   const Network& network = *state.equations;
   Integrator integrator(network, [&] {
     if (progress) progress(0.5);
@@ -108,10 +167,12 @@ std::vector<PressureRates> pressure_rates(const SteadyState& state,
   const int size = network.size(), states = network.states();
   const int unknowns = map.unknowns();
   const auto columns = unknowns + static_cast<int>(pairs.size());
+  std::vector<Node> nodes;
   std::vector<double> at_end;
   const std::vector<double> end = integrator.over_period(
       state.corrected_states, load_size, state.convergence.tolerance, &at_end, nullptr,
       [&](const Integrator::Step& step) {
+        if (means != nullptr) add_nodes(step, size, columns, nodes);
         while (next < places.size() && places[next].x <= step.to) {
           const double x = places[next].x;
           const Eigen::Map<const Matrix> by(step.sensitivities(x).data(), size, columns);
@@ -136,7 +197,8 @@ std::vector<PressureRates> pressure_rates(const SteadyState& state,
     throw ComputationError("hydraulics: the periodic state has no derivatives here");
 
   std::vector<PressureRates> rates(pairs.size());
-  for (std::size_t p = 0; p < pairs.size(); ++p) {
+  if (means != nullptr) means->assign(pairs.size(), {});
+  numerics::parallel_for(0, pairs.size(), [&](std::size_t p) {
     const auto direction = static_cast<Eigen::Index>(p);
     const auto of = [&](const auto& row) {
       return row.head(unknowns).dot(follow.col(direction)) + row[unknowns + direction];
@@ -158,7 +220,22 @@ std::vector<PressureRates> pressure_rates(const SteadyState& state,
                                  return each.mean_scale();
                                });
     }
-  }
+    if (means == nullptr) return;
+    const Direction& way = directions[p];
+    const double half = way.apart / 2;
+    const double load = network.load_sought() ? std::exp(half * follow(states, direction)) : 1;
+    MeansOf above(pairs[p]->kept_above, way.above_load * load);
+    MeansOf below(pairs[p]->kept_below, way.below_load / load);
+    for (const Node& node : nodes) {
+      const Vector moved = half * (node.by.leftCols(unknowns) * follow.col(direction) +
+                                   node.by.col(unknowns + direction));
+      above.add(node, node.state + moved);
+      below.add(node, node.state - moved);
+    }
+    const double mean = state.summary.delivery_mean, change = half * rates[p].delivery_mean;
+    (*means)[p] = {above.state(mean + change), below.state(mean - change), above.power(),
+                   below.power()};
+  });
   return rates;
 }
 

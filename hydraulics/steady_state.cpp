@@ -274,23 +274,9 @@ int rows_of(const Case& the_case) {
   return samples * ((kFewestRows + samples - 1) / samples);
 }
 
-void summarize(const Case& the_case, const Network& network, const Integrals& integrals,
-               Summary& s) {
-  const int n = network.pistons();
-  const double density = network.fluid().state(network.suction_log_pressure()).density;
-  const double time = network.period_deg() * network.seconds_per_degree();
-  s.density = density;
-  s.displacement = network.displacement();
-  s.ideal_flow = (network.backwards() ? -1 : 1) * s.displacement / (n * time);
-  s.mass_flow = integrals.load / time;
-  s.flow = s.mass_flow / density;
-  s.volumetric_efficiency = s.flow / s.ideal_flow;
-  s.leakage = integrals.leakage / time / density;
+void note_ends(const Case& the_case, const Network& network, Summary& s) {
   s.overshoot = s.chamber_greatest - s.delivery_mean;
   s.undershoot = the_case.pressure.ports.suction - s.chamber_least;
-  s.work = (network.backwards() ? -1 : 1) * integrals.work * n;
-  s.mass_in = integrals.suction * n;
-  s.mass_out = (integrals.delivery + integrals.leakage) * n;
   for (const Bridge& bridge : bridges(network.suction(), network.delivery()))
     (bridge.both_open ? s.both_open_deg : s.both_closed_deg) += bridge.to_deg - bridge.from_deg;
 }
@@ -333,7 +319,8 @@ void solve(const Case& the_case, const Network& network, PeriodMap& map, double 
   s.delivery_mean = map.mean_delivery();
   turn.summarize(integrals, s);
   result.orders = turn.orders(kOrders);
-  summarize(the_case, network, integrals, s);
+  summarize(network, integrals, s);
+  note_ends(the_case, network, s);
   result.timing = timing.timing(s.delivery_mean);
   result.computed = std::make_shared<ComputedPressure>(std::move(curve));
   PressureSpec as_computed;
@@ -574,17 +561,17 @@ std::vector<Line> lines(const SteadyState& state) {
   const Summary& s = state.summary;
   const double bar = kPascalPerBar;
   return {
-      {"displacement", s.displacement * 1e6, "cm3/rev", "displacement_cm3"},
+      {"displacement", s.displacement * 1e6, "cm3/rev", "displacement_cm3", true},
       {"density of all volume flows, that in the suction port", s.density, "kg/m3",
-       "density_kg_per_m3"},
+       "density_kg_per_m3", true},
       {"ideal flow, displacement x speed", s.ideal_flow / kLitrePerMinute, "l/min",
-       "ideal_flow_l_per_min"},
-      {"mean flow to the load", s.flow / kLitrePerMinute, "l/min", "flow_l_per_min"},
-      {"mean mass flow to the load", s.mass_flow, "kg/s", "mass_flow_kg_per_s"},
+       "ideal_flow_l_per_min", true},
+      {"mean flow to the load", s.flow / kLitrePerMinute, "l/min", "flow_l_per_min", true},
+      {"mean mass flow to the load", s.mass_flow, "kg/s", "mass_flow_kg_per_s", true},
       {"volumetric efficiency, mean flow to the load over ideal flow",
-       100 * s.volumetric_efficiency, "%", "volumetric_efficiency_percent"},
-      {"leakage", s.leakage / kLitrePerMinute, "l/min", "leakage_l_per_min"},
-      {"mean delivery pressure", s.delivery_mean / bar, "bar", "delivery_mean_bar"},
+       100 * s.volumetric_efficiency, "%", "volumetric_efficiency_percent", true},
+      {"leakage", s.leakage / kLitrePerMinute, "l/min", "leakage_l_per_min", true},
+      {"mean delivery pressure", s.delivery_mean / bar, "bar", "delivery_mean_bar", true},
       {"delivery pressure, minimum", s.delivery_least / bar, "bar", "delivery_least_bar"},
       {"delivery pressure, maximum", s.delivery_greatest / bar, "bar", "delivery_greatest_bar"},
       {"delivery pressure ripple, peak to peak", (s.delivery_greatest - s.delivery_least) / bar,
@@ -599,8 +586,8 @@ std::vector<Line> lines(const SteadyState& state) {
       {"chamber pressure, minimum", s.chamber_least / bar, "bar", "chamber_least_bar"},
       {"angle of the minimum", s.chamber_least_deg, "deg", "chamber_least_deg"},
       {"undershoot under suction pressure", s.undershoot / bar, "bar", "undershoot_bar"},
-      {"work of the pistons per turn", s.work, "J", "work_J"},
-      {"mean torque of that work", s.work / (2 * kPi), "Nm", "work_torque_Nm"},
+      {"work of the pistons per turn", s.work, "J", "work_J", true},
+      {"mean torque of that work", s.work / (2 * kPi), "Nm", "work_torque_Nm", true},
       {"mass in minus mass out, over mass in", (s.mass_in - s.mass_out) / s.mass_in, "",
        "mass_balance"},
       load_line(s),

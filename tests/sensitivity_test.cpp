@@ -187,8 +187,11 @@ TEST(Sensitivity, UnderHydraulicPressureIsThatOfThePeriodicState) {
     const Case base =
         read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_rated_hydraulic.toml", changes);
     const auto variables = variables_of(base, names);
-    const auto outputs =
-        outputs_of(base, {"mean:Td", "peak:Rb1", "max:Rb2_x1", "rms:Rc", "mean:Rs", "min:Fh"});
+    const auto outputs = outputs_of(
+        base,
+        {"mean:Td", "peak:Rb1", "max:Rb2_x1", "rms:Rc", "mean:Rs", "min:Fh", "efficiency.overall",
+         "efficiency.mechanical_mass", "efficiency.overall_iso", "hydraulics.flow_l_per_min",
+         "hydraulics.leakage_l_per_min", "hydraulics.work_J", "hydraulics.delivery_mean_bar"});
     const Sensitivities found = sensitivities(base, variables, outputs);
     const Evaluator evaluator(Family(base, variables), outputs);
     for (std::size_t v = 0; v < variables.size(); ++v) {
@@ -217,14 +220,15 @@ TEST(Sensitivity, UnderHydraulicPressureSaysWhereDifferencesAreTaken) {
   Case base = read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_rated_hydraulic.toml",
                         {"operation.samples_per_revolution=60"});
   const auto ways = [&] {
-    const Sensitivities found =
-        sensitivities(base, variables_of(base, {"hydraulics.bulk_modulus_MPa"}),
-                      outputs_of(base, {"mean:Td", "efficiency.volumetric"}));
-    return std::vector<Way>{found.derivatives[0][0].way, found.derivatives[1][0].way};
+    const Sensitivities found = sensitivities(
+        base, variables_of(base, {"hydraulics.bulk_modulus_MPa"}),
+        outputs_of(base, {"mean:Td", "efficiency.volumetric", "hydraulics.chamber_greatest_bar"}));
+    return std::vector<Way>{found.derivatives[0][0].way, found.derivatives[1][0].way,
+                            found.derivatives[2][0].way};
   };
-  EXPECT_THAT(ways(), testing::ElementsAre(Way::forward, Way::differences));
+  EXPECT_THAT(ways(), testing::ElementsAre(Way::forward, Way::forward, Way::differences));
   base.pressure.points = 72;  // a spline
-  EXPECT_THAT(ways(), testing::ElementsAre(Way::differences, Way::differences));
+  EXPECT_THAT(ways(), testing::ElementsAre(Way::differences, Way::differences, Way::differences));
   // On the bound of its range: of the pump alone.
   base.pressure.points = 0;
   base.pump.friction.shaft_torque_factor = 1;
@@ -233,6 +237,23 @@ TEST(Sensitivity, UnderHydraulicPressureSaysWhereDifferencesAreTaken) {
   EXPECT_EQ(found.derivatives[0][0].way, Way::forward);
   EXPECT_NEAR(found.derivatives[0][0].value, -found.values[0], 1e-12 * found.values[0]);
   EXPECT_EQ(to_string(Way::forward), "forward sensitivities (CVODES)");
+}
+
+// The oil's arc is that of the port plate where the case does not give it: a row of the port plate
+// moves both, whatever else is asked for beside it.
+TEST(Sensitivity, OfAParameterThatAnotherOneFollowsIsThatOfBoth) {
+  const Case base =
+      read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_rated_hydraulic.toml",
+                {"operation.samples_per_revolution=60"});
+  const auto outputs = outputs_of(base, {"hydraulics.chamber_greatest_bar"});
+  const auto derivative = [&](const std::vector<std::string>& names) {
+    const Derivative d = sensitivities(base, variables_of(base, names), outputs).derivatives[0][0];
+    EXPECT_EQ(d.way, Way::differences);
+    return d.value;
+  };
+  const double alone = derivative({"port_plate.delivery_arc_deg.1"});
+  EXPECT_GT(std::abs(alone), 0.1);  // bar per degree
+  EXPECT_EQ(derivative({"port_plate.delivery_arc_deg.1", "hydraulics.delivery_arc_deg.1"}), alone);
 }
 
 TEST(Sensitivity, SaysWhatItCannotDo) {

@@ -13,6 +13,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/study/efficiency.h"
 #include "bentaxis/study/piece_progress.h"
 
 namespace bentaxis::designs {
@@ -55,8 +56,18 @@ bool is_exact(const Variable& variable, const Case& base) {
   return is_of_closed_form(variable, base);
 }
 
-bool is_exact(const Output& output, const ChannelLayout& layout) {
+bool is_statistic(const Output& output, const ChannelLayout& layout) {
   return output.source == Source::curve && output.columns.back() < layout.reactions();
+}
+
+// Made of means over a turn of the oil, and of the drive torque.
+bool is_of_means(const Output& output, const study::PreparedCase& ready) {
+  if (!ready.hydraulics) return false;
+  if (output.source == Source::efficiency) return true;
+  if (output.source != Source::hydraulics) return false;
+  const auto lines = hydraulics::lines(*ready.hydraulics);
+  return std::any_of(lines.begin(), lines.end(),
+                     [&](const auto& line) { return line.mean && line.key == output.item; });
 }
 
 Rates rates_of(const Variable& variable, const Case& base) {
@@ -233,13 +244,22 @@ struct Turn {
   Case the_case;
   Samples samples;
   std::vector<hydraulics::PressureRates> fine, coarse;  // of hydraulic pressure
+  // Of each variable, where they are wanted: the cases beside it, and the means of `fine` and
+  // `coarse` there.
+  std::vector<hydraulics::Neighbours> beside;
+  std::vector<hydraulics::NeighbourMeans> fine_means, coarse_means;
+};
+
+struct Wanted {
+  bool errors = false;  // under hydraulic pressure every direction once more, with coarse rates
+  bool means = false;   // of the oil
 };
 
 // Takes from `variables` those that the hydraulic pressure has no derivatives by.
-Turn turn_of(const Case& base, const std::vector<Variable>& all, bool with_errors,
-             std::vector<std::size_t>& variables, const study::PartProgress& progress_of) {
-  study::PreparedCase ready = study::prepare(base, progress_of);
-  Turn turn{ready.the_case, ready.samples(study::Way::driven), {}, {}};
+Turn turn_of(const study::PreparedCase& ready, const Case& base, const std::vector<Variable>& all,
+             const Wanted& wanted, std::vector<std::size_t>& variables,
+             const study::PartProgress& progress_of) {
+  Turn turn{ready.the_case, ready.samples(study::Way::driven), {}, {}, {}, {}, {}};
   if (!ready.hydraulics) return turn;
   std::vector<hydraulics::Neighbours> parameters;
   std::vector<std::size_t> kept;
@@ -254,9 +274,10 @@ Turn turn_of(const Case& base, const std::vector<Variable>& all, bool with_error
   std::vector<double> angles;
   for (const double theta : turn.samples.theta_deg)
     for (int k = 1; k <= n; ++k) angles.push_back(piston_angle_deg(theta, k, n));
-  const auto rates = [&](double tolerance) {
+  const auto rates = [&](double tolerance, std::vector<hydraulics::NeighbourMeans>& means) {
     auto found = hydraulics::pressure_rates(*ready.hydraulics, parameters, angles, tolerance,
-                                            progress_of("derivatives of the pressure"));
+                                            progress_of("derivatives of the pressure"),
+                                            wanted.means ? &means : nullptr);
     for (std::size_t i = 0; i < found.size(); ++i) {
       const double size = size_of(all[variables[i]].value(base));
       for (double& rate : found[i].chamber) rate /= size;
@@ -265,12 +286,13 @@ Turn turn_of(const Case& base, const std::vector<Variable>& all, bool with_error
     return found;
   };
   try {
-    if (with_errors) turn.fine = rates(kFine);
-    turn.coarse = rates(kCoarse);
+    if (wanted.errors) turn.fine = rates(kFine, turn.fine_means);
+    turn.coarse = rates(kCoarse, turn.coarse_means);
   } catch (const ComputationError&) {
     variables.clear();  // differences may get through
   }
-  if (!with_errors) turn.fine = turn.coarse;
+  if (!wanted.errors) turn.fine = turn.coarse;
+  turn.beside = std::move(parameters);
   return turn;
 }
 
@@ -284,15 +306,14 @@ bool load_sets_pressure(const Case& base) {
 // them.
 class TurnDerivatives {
  public:
-  // @param with_errors  under hydraulic pressure every direction once more, with coarse rates
-  TurnDerivatives(const Case& base, const std::vector<Variable>& all,
-                  std::vector<std::size_t> wanted, bool with_errors,
-                  const study::PartProgress& progress_of)
+  TurnDerivatives(const study::PreparedCase& ready, const Case& base,
+                  const std::vector<Variable>& all, std::vector<std::size_t> variables,
+                  const Wanted& wanted, const study::PartProgress& progress_of)
       : base_(base),
-        variables_(std::move(wanted)),
-        turn_(turn_of(base, all, with_errors, variables_, progress_of)),
+        variables_(std::move(variables)),
+        turn_(turn_of(ready, base, all, wanted, variables_, progress_of)),
         hydraulic_(turn_.the_case.pressure.kind == PressureKind::hydraulic) {
-    const std::size_t directions = (hydraulic_ && with_errors ? 2 : 1) * variables_.size();
+    const std::size_t directions = (hydraulic_ && wanted.errors ? 2 : 1) * variables_.size();
     for (std::size_t d = 0; d < directions; ++d)
       rates_.push_back(rates_of(all[variables_[d % variables_.size()]], base));
   }
@@ -300,6 +321,30 @@ class TurnDerivatives {
   const std::vector<std::size_t>& variables() const { return variables_; }
   bool hydraulic() const { return hydraulic_; }
   std::size_t directions() const { return rates_.size(); }
+
+  // Values of something that is made of means, a little above and below a direction's variable,
+  // over what these are apart in it.
+  // @param of           what it is: of a case with the means of its oil, and of the mean torque
+  // @param torque_rate  of the mean torque along the direction
+  template <class Of>
+  double of_means(std::size_t d, const Variable& variable, double torque, double torque_rate,
+                  const Of& of) const {
+    const std::size_t v = d % variables_.size();
+    const hydraulics::Neighbours& beside = turn_.beside[v];
+    const hydraulics::NeighbourMeans& means =
+        (d < variables_.size() ? turn_.fine_means : turn_.coarse_means)[v];
+    const double apart = beside.apart * size_of(variable.value(base_));
+    const auto at = [&](const Case& there, const hydraulics::SteadyState& state,
+                        const hydraulics::PowerBudget& power, double way) {
+      study::PreparedCase ready;
+      ready.the_case = there;
+      ready.hydraulics = state;
+      return of(ready, hydraulics::pump_power(power), torque + way * apart / 2 * torque_rate);
+    };
+    return (at(beside.above, means.above, means.power_above, 1) -
+            at(beside.below, means.below, means.power_below, -1)) /
+           apart;
+  }
 
   // Calls visit(row, values, derivatives), derivatives as of DerivativeModel.
   template <class Visit>
@@ -349,29 +394,70 @@ class TurnDerivatives {
   std::vector<Rates> rates_;
 };
 
+// What an output that is made of means is.
+double value_of_means(const Output& output, const study::PreparedCase& ready,
+                      const hydraulics::PumpPower& power, double torque) {
+  if (output.source == Source::efficiency) {
+    const study::Efficiencies all = study::efficiencies(ready, power, torque);
+    for (const study::EfficiencyLine& line : study::efficiency_lines())
+      if (output.item == line.key) return all.*line.value;
+  }
+  for (const hydraulics::Line& line : hydraulics::lines(*ready.hydraulics))
+    if (output.item == line.key) return line.value;
+  return not_computed();
+}
+
 // @return the variables for which it could be done
-std::vector<std::size_t> find_exact(Sensitivities& s, const std::vector<std::size_t>& outputs,
+std::vector<std::size_t> find_exact(Sensitivities& s, const study::PreparedCase& ready,
+                                    const std::vector<std::size_t>& outputs,
                                     std::vector<std::size_t> wanted,
                                     const study::PartProgress& progress_of) {
-  const TurnDerivatives turn(s.base, s.variables, std::move(wanted), true, progress_of);
+  const auto of_means = [&](std::size_t o) { return is_of_means(s.outputs[o], ready); };
+  const bool means = std::any_of(outputs.begin(), outputs.end(), of_means);
+  const TurnDerivatives turn(ready, s.base, s.variables, std::move(wanted), {true, means},
+                             progress_of);
   const std::vector<std::size_t>& variables = turn.variables();
   if (variables.empty()) return variables;
   std::vector<StatisticRates> statistics;
-  for (const std::size_t o : outputs)
+  std::vector<std::size_t> of_statistic;
+  for (const std::size_t o : outputs) {
+    if (of_means(o)) continue;
+    of_statistic.push_back(o);
     statistics.emplace_back(s.outputs[o], s.scales[o], turn.directions());
-  const std::size_t reactions = ChannelLayout(s.base.pump).reactions();
+  }
+  const ChannelLayout layout(s.base.pump);
+  const std::size_t reactions = layout.reactions(), td = layout.Td();
+  double torque = 0, rows = 0;
+  std::vector<double> torque_rates(turn.directions());
   turn.for_each_row([&](std::size_t, const auto& values, const auto& derivatives) {
     for (StatisticRates& statistic : statistics) statistic.add(values, derivatives, reactions);
+    torque += values[td];
+    for (std::size_t d = 0; d < torque_rates.size(); ++d)
+      torque_rates[d] += derivatives[d * reactions + td];
+    ++rows;
   });
   const std::size_t count = variables.size();
-  for (std::size_t i = 0; i < outputs.size(); ++i)
+  // @param of  the derivative along a direction
+  const auto keep = [&](std::size_t o, const auto& of) {
     for (std::size_t d = 0; d < count; ++d) {
-      Derivative& found = s.derivatives[outputs[i]][variables[d]];
-      found = statistics[i].derivative(d);
+      Derivative& found = s.derivatives[o][variables[d]];
+      found = of(d);
       if (!turn.hydraulic()) continue;
       found.way = Way::forward;
-      found.error += std::abs(statistics[i].derivative(count + d).value - found.value);
+      found.error += std::abs(of(count + d).value - found.value);
     }
+  };
+  for (std::size_t i = 0; i < of_statistic.size(); ++i)
+    keep(of_statistic[i], [&](std::size_t d) { return statistics[i].derivative(d); });
+  for (const std::size_t o : outputs) {
+    if (!of_means(o)) continue;
+    keep(o, [&](std::size_t d) {
+      const Variable& variable = s.variables[variables[d % count]];
+      return Derivative{turn.of_means(
+          d, variable, torque / rows, torque_rates[d] / rows,
+          [&](const auto&... made) { return value_of_means(s.outputs[o], made...); })};
+    });
+  }
   return variables;
 }
 
@@ -428,17 +514,17 @@ class Ridders {
   double value_ = 0, error_ = std::numeric_limits<double>::infinity();
 };
 
-void find_by_differences(Sensitivities& s, const Evaluator& evaluator, std::size_t v,
-                         const std::vector<std::size_t>& outputs, const Progress& progress) {
+// Of one variable alone: others stay as the case has them, or follow it where they do by default.
+void find_by_differences(Sensitivities& s, std::size_t v, const std::vector<std::size_t>& outputs,
+                         const Progress& progress) {
+  const Evaluator evaluator(Family(s.base, {s.variables[v]}), s.outputs, s.model);
   std::string reason;
-  std::vector<double> at = s.at;
   const int levels = evaluator.fast() ? kLevels : kSlowLevels;
   int evaluations = 0;
   const auto values = [&](double x) {
     // Some more than the levels need, as a first step may be halved.
     if (progress) progress(std::min(1.0, evaluations++ / (2.0 * levels + 2)));
-    at[v] = x;
-    Evaluation found = evaluator.evaluate(at);
+    Evaluation found = evaluator.evaluate({&x, 1});
     if (!found.feasible()) reason = found.reason;
     return found.values;
   };
@@ -557,8 +643,8 @@ std::vector<Variable> differentiate_reactions(const Case& base, const ReactionVi
                                               const study::PartProgress& progress_of) {
   const std::vector<Variable> all = continuous_variables(base);
   const TurnDerivatives turn(
-      base, all, numbers(all.size(), [&](std::size_t v) { return is_exact(all[v], base); }), false,
-      progress_of);
+      study::prepare(base, progress_of), base, all,
+      numbers(all.size(), [&](std::size_t v) { return is_exact(all[v], base); }), {}, progress_of);
   std::vector<Variable> found;
   for (const std::size_t v : turn.variables()) found.push_back(all[v]);
   if (!found.empty()) turn.for_each_row(visit);
@@ -571,15 +657,23 @@ Sensitivities sensitivities(const Case& base, const std::vector<Variable>& varia
   study::require_memory(base, study::Kept::table, study::Way::driven);
   Sensitivities s = begin(base, variables, outputs, model);
   const ChannelLayout layout(base.pump);
-  const bool analytic = model == study::Model::analytic;
+  std::vector<std::size_t> outputs_found, variables_found;
+  if (model == study::Model::analytic)
+    variables_found =
+        numbers(variables.size(), [&](std::size_t v) { return is_exact(s.variables[v], base); });
+  if (!variables_found.empty()) {
+    const study::PreparedCase ready = study::prepare(base, progress_of);
+    outputs_found = numbers(outputs.size(), [&](std::size_t o) {
+      return is_computed(s.values[o]) &&
+             (is_statistic(outputs[o], layout) || is_of_means(outputs[o], ready));
+    });
+    if (!outputs_found.empty())
+      variables_found =
+          find_exact(s, ready, outputs_found, std::move(variables_found), progress_of);
+  }
   const auto exact_output = [&](std::size_t o) {
-    return analytic && is_exact(s.outputs[o], layout) && is_computed(s.values[o]);
+    return std::find(outputs_found.begin(), outputs_found.end(), o) != outputs_found.end();
   };
-  const auto outputs_found = numbers(outputs.size(), exact_output);
-  auto variables_found =
-      numbers(variables.size(), [&](std::size_t v) { return is_exact(s.variables[v], base); });
-  if (!outputs_found.empty() && !variables_found.empty())
-    variables_found = find_exact(s, outputs_found, std::move(variables_found), progress_of);
   const auto exact_variable = [&](std::size_t v) {
     return std::find(variables_found.begin(), variables_found.end(), v) != variables_found.end();
   };
@@ -595,11 +689,10 @@ Sensitivities sensitivities(const Case& base, const std::vector<Variable>& varia
   }
   if (by_differences.empty()) return s;
   const Progress progress = progress_of("derivatives");
-  const Evaluator evaluator(Family(base, variables), outputs, model);
   std::size_t done = 0;
   try {
     for (; done < by_differences.size(); ++done)
-      find_by_differences(s, evaluator, by_differences[done], wanted[by_differences[done]],
+      find_by_differences(s, by_differences[done], wanted[by_differences[done]],
                           study::within(progress, done, by_differences.size()));
     if (progress) progress(1);
   } catch (const Interrupted&) {
@@ -650,10 +743,8 @@ SensitivityCheck check(const Sensitivities& found, const study::PartProgress& pr
   Sensitivities other = begin(found.base, found.variables, found.outputs, model);
   const Progress progress = progress_of("derivatives of " + study::to_string(model));
   const auto all = numbers(found.outputs.size(), [](std::size_t) { return true; });
-  const Evaluator evaluator(Family(found.base, found.variables), found.outputs, model);
   for (std::size_t v = 0; v < found.variables.size(); ++v)
-    find_by_differences(other, evaluator, v, all,
-                        study::within(progress, v, found.variables.size()));
+    find_by_differences(other, v, all, study::within(progress, v, found.variables.size()));
   if (progress) progress(1);
   return compare_derivatives(found, std::move(other));
 }

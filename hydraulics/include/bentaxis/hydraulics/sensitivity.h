@@ -22,6 +22,15 @@ struct PressureRates {
   double delivery_mean = 0;     ///< Pa gauge, Summary::delivery_mean
 };
 
+/// What means over a turn become in the neighbours of a state, to first order in what they are
+/// apart: the difference of anything that is made of them, over that, is its derivative.
+struct NeighbourMeans {
+  /// Of the summary: displacement, density, flows, their efficiency, work, masses and the mean
+  /// delivery pressure; and the equations.
+  SteadyState above, below;
+  PowerBudget power_above, power_below;  ///< as power_by_place()
+};
+
 /// Whether both cases are allowed, with the circuit that the state is of.
 bool has_rates(const SteadyState& state, const Neighbours& parameter);
 
@@ -33,11 +42,13 @@ bool has_rates(const SteadyState& state, const Neighbours& parameter);
 /// 0, so that the equations are continuous there.
 /// @param theta_k_deg  angles of a chamber, any
 /// @param tolerance    error allowed per step of d(ln P)/d(parameter), in the unit of `apart`
+/// @param means        if not null: receives the means of the neighbours of each parameter
 /// @throws InputError where !has_rates()
 /// @throws ComputationError where the integration fails
 std::vector<PressureRates> pressure_rates(const SteadyState& state,
                                           std::span<const Neighbours> parameters,
                                           std::span<const double> theta_k_deg,
-                                          double tolerance = 1e-9, const Progress& progress = {});
+                                          double tolerance = 1e-9, const Progress& progress = {},
+                                          std::vector<NeighbourMeans>* means = nullptr);
 
 }  // namespace bentaxis::hydraulics

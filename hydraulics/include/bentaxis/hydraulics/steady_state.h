@@ -156,7 +156,8 @@ struct Line {
   std::string name;
   double value = 0;
   std::string unit;
-  std::string key;  ///< one word with its unit: "flow_l_per_min"
+  std::string key;    ///< one word with its unit: "flow_l_per_min"
+  bool mean = false;  ///< NeighbourMeans have it
 };
 std::vector<Line> lines(const SteadyState& state);
 
