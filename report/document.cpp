@@ -536,6 +536,7 @@ inline void to_json(Json& json, const Curves& curves) {
           {"difference", columns(curves.difference, kDifferenceDigits)}};
   put(json, "axis", curves.axis);
   put(json, "marks", curves.marks);
+  if (curves.samples > 0) json["samples"] = curves.samples;
   if (!curves.reference) return;
   Json held = Json::object();
   for (const Curves::Held& one : curves.reference->held) {

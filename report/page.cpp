@@ -5,9 +5,13 @@
 #include <vector>
 
 #include "bentaxis/report/picture.h"
+#include "thinned.h"
 
 namespace bentaxis::report {
 namespace {
+
+// Of curves with more rows than this a page shows some. A turn of a tenth of a degree is whole.
+constexpr std::size_t kMostRows = 4000;
 
 // JSON inside a script element must not contain "</" or "<!--".
 std::string script_safe(const std::string& json) {
@@ -75,7 +79,9 @@ std::string filled_template(const std::string& part, const Fillings& fillings) {
   return text;
 }
 
-std::string render_page(const Document& document, const Curves& curves) {
+namespace {
+
+std::string page_of(const Document& document, const Curves& curves) {
   const auto& parts = page_parts();
   return filled_template("template.html", {{"@TITLE@", markup_of(document.title)},
                                            {"@CSS@", parts.at("report.css")},
@@ -88,6 +94,15 @@ std::string render_page(const Document& document, const Curves& curves) {
                                            {"@SCENE@", scene_block(document)},
                                            {"@CURVES_JSON@", script_safe(packed_json(curves))},
                                            {"@REPORT_JSON@", script_safe(compact_json(document))}});
+}
+
+}  // namespace
+
+std::string render_page(const Document& document, const Curves& curves) {
+  const auto rows = rows_shown(curves, kMostRows);
+  if (rows.size() == curves.theta_deg.size()) return page_of(document, curves);
+  const Thinned shown = thinned(document, curves, rows);
+  return page_of(shown.document, shown.curves);
 }
 
 }  // namespace bentaxis::report

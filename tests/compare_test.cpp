@@ -533,6 +533,26 @@ TEST(Page, HoldsTheDataAndNeedsNoNetwork) {
   EXPECT_THAT(page, HasSubstr(R"("title":"\u003cT>")"));
 }
 
+// A spike between two of the evenly spread samples stays, with its angle.
+TEST(Page, ShowsSomeOfVeryManySamplesWithTheExtremes) {
+  const auto page = [](std::size_t samples) {
+    report::Curves curves;
+    report::Values values;
+    for (std::size_t row = 0; row < samples; ++row) {
+      curves.theta_deg.push_back(static_cast<double>(row));
+      values.push_back(row == 1234 ? 5 : 0);
+    }
+    curves.tables.push_back({"analytic", {{"Rs_1_x2_N", values}}});
+    return report::render_page({}, curves);
+  };
+  EXPECT_EQ(page(3600).find("\"samples\":"), std::string::npos);
+  const std::string whole = page(4000), thinned = page(200000);
+  EXPECT_THAT(thinned, HasSubstr("\"samples\":200000"));
+  EXPECT_THAT(thinned, HasSubstr(",1234.0,"));
+  EXPECT_EQ(thinned.find(",1235.0,"), std::string::npos);
+  EXPECT_LT(thinned.size(), whole.size() + 20000);
+}
+
 TEST(Json, IsOnePerLineForAReaderAndOneLineForThePage) {
   report::Document document;
   document.title = "Größe";

@@ -14,6 +14,8 @@ function figures(report, data) {
   return el("div", {},
     figures.some(f => !STILL.includes(f.kind)) ? el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; "
       + "double-click to see all again. Point at a curve to read the values in the table above it.") : null,
+    data.samples ? el("p.hint", { id: "samples" }, `The curves show ${data.theta.length} of ${data.samples} samples: evenly spread ones, and `
+      + "those at which a curve is smallest or largest. The CSV files have all of them.") : null,
     figures.map(f => {
       const own = dataOf(f, report, data), still = STILL.includes(f.kind);
       const picture = el("div.picture" + (still ? ".still" : ""));
@@ -46,7 +48,7 @@ function prepare(report, given) {
   const usual = ["analytic", "multibody"];
   const pair = [0, 1].map(i => (tables[i] || list(report.models)[i] || {}).name || usual[i]);
   return {
-    ...orderOf(list(curves.theta_deg), !curves.axis), marks: list(curves.marks),
+    ...orderOf(list(curves.theta_deg), !curves.axis), marks: list(curves.marks), samples: curves.samples,
     axis: { label: curves.axis || SHAFT_ANGLE, angle: !curves.axis }, cursor: cursorOf(curves.axis || SHAFT_ANGLE), tables, pair,
     difference: curves.difference || {}, reference: curves.reference || null, mounts: [],
     ofTable: (row, i) => row[pair[i]] ?? row[usual[i]] ?? null,
@@ -84,9 +86,9 @@ function sectionsOf(report, data) {
 }
 
 function header(report, data) {
-  const { theta, tables } = data, n = theta.length;
+  const { theta, tables } = data, n = theta.length, all = data.samples || n;
   const angles = n === 0 ? null : !data.axis.angle ? `${n} rows, ${data.axis.label} ${number(theta[0])} to ${number(theta[n - 1])}` : n === 1 ? "1 angle, " + degrees(theta[0])
-    : `${n} angles from ${degrees(theta[0])} to ${degrees(theta[n - 1])}`;
+    : `${all} angles from ${degrees(theta[0])} to ${degrees(theta[n - 1])}`;
   const parts = [report.case && report.case.file, tables.map(t => t.name).join(" and "), angles,
                  list(list(report.program)[0]).join(" ")];
   return [el("h1", {}, report.title || document.title),

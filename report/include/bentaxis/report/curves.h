@@ -1,6 +1,7 @@
 // Curves of a report's page.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
@@ -44,6 +45,7 @@ struct Curves {
     bool upper;
   };
   std::vector<Mark> marks = {};
+  std::size_t samples = 0;  ///< that there are, where only some of them are in the curves
 };
 
 }  // namespace bentaxis::report
