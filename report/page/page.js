@@ -87,7 +87,7 @@ function sectionsOf(report, data) {
 
 function header(report, data) {
   const { theta, tables } = data, n = theta.length, all = data.samples || n;
-  const angles = n === 0 ? null : !data.axis.angle ? `${n} rows, ${data.axis.label} ${number(theta[0])} to ${number(theta[n - 1])}` : n === 1 ? "1 angle, " + degrees(theta[0])
+  const angles = n === 0 ? null : !data.axis.angle ? `${all} rows, ${data.axis.label} ${number(theta[0])} to ${number(theta[n - 1])}` : n === 1 ? "1 angle, " + degrees(theta[0])
     : `${all} angles from ${degrees(theta[0])} to ${degrees(theta[n - 1])}`;
   const parts = [report.case && report.case.file, tables.map(t => t.name).join(" and "), angles,
                  list(list(report.program)[0]).join(" ")];
