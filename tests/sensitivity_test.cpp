@@ -276,6 +276,10 @@ TEST(Sensitivity, SaysWhatItCannotDo) {
                     outputs_of(bound, {"efficiency.mechanical", "mean:Td"}));
   EXPECT_THAT(found.derivatives[0][0].reason, testing::HasSubstr("bound"));
   EXPECT_FALSE(is_computed(found.derivatives[0][0].value));
+  const std::string csv = sensitivity_csv(found, {});
+  EXPECT_THAT(csv, testing::HasSubstr(",error,reason\n"));
+  EXPECT_THAT(csv, testing::HasSubstr(found.derivatives[0][0].reason + "\nmean:Td,"));
+  EXPECT_EQ(csv.substr(csv.size() - 2), ",\n");  // there is a derivative
   EXPECT_NEAR(found.derivatives[1][0].value, -found.values[1], 1e-12 * found.values[1]);
 }
 

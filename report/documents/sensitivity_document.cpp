@@ -252,7 +252,7 @@ std::string sensitivity_csv(const Sensitivities& found,
   CsvRows csv(
       std::string("output,output_unit,output_value,parameter,parameter_unit,parameter_value,"
                   "derivative,elasticity,found_by,error") +
-      (check ? ",derivative_of_other_model,difference" : ""));
+      (check ? ",derivative_of_other_model,difference" : "") + ",reason");
   for (std::size_t o = 0; o < found.outputs.size(); ++o)
     for (std::size_t v = 0; v < found.variables.size(); ++v) {
       const Derivative& d = found.derivatives[o][v];
@@ -260,7 +260,8 @@ std::string sensitivity_csv(const Sensitivities& found,
       if (check) other = {check->other.derivatives[o][v].value, check->differences[o][v]};
       csv.row(found.outputs[o].name, found.outputs[o].unit, found.values[o],
               found.variables[v].name(), found.variables[v].unit(), found.at[v], d.value,
-              found.elasticity(o, v), is_computed(d.value) ? to_string(d.way) : "", d.error, other);
+              found.elasticity(o, v), is_computed(d.value) ? to_string(d.way) : "", d.error, other,
+              d.reason);
     }
   return std::move(csv).text();
 }
