@@ -232,7 +232,7 @@ TEST(Rattle, CriterionOfPistonsIsTheForceOfOneThatCarriesAlone) {
     low = std::min(low, table.at(row, couple));
     high = std::max(high, table.at(row, couple));
   }
-  const double arm = 0.022 * (1 - 24.0 / 46.0);  // m: Rd, l_c and b1 of the case
+  const double arm = 0.022 * (1 - 34.0 / 46.0);  // m: Rd, l_c and b1 of the case
   EXPECT_NEAR(least, low / arm, scaled(1e-4) * std::abs(high / arm));
   EXPECT_NEAR(greatest, high / arm, scaled(1e-4) * std::abs(high / arm));
 }

@@ -63,6 +63,9 @@ struct Walls {
   double widest = 0, widest_deg = 0;    // rad, and where
   double without_deg = not_computed();  // an angle without free play
   double leaving = 0, leaving_deg = 0;  // m/s, and where
+  // m from A along the piston that carries to the end of its bore, at most, and where. Joints stay
+  // outside of the block: it ends where each of them comes nearest to it in its stroke.
+  double outside = 0, outside_deg = 0;
 };
 
 struct Facts {
@@ -176,10 +179,18 @@ std::optional<Walls> walls_of(const Facts& f) {
       }
       const double lag = omega < 0 ? play.low : play.high;
       const int piston = omega < 0 ? play.low_piston : play.high_piston;
-      const auto approach = [&](double turned) {
+      const auto off_bore = [&](double turned) {
         const double at = theta + turned - 2 * kPi * piston / f.g.pistons;
-        return walls.share * joint_distance(f.g, at, at - lag);
+        return joint_distance(f.g, at, at - lag);
       };
+      const auto approach = [&](double turned) { return walls.share * off_bore(turned); };
+      const double withdrawn = f.g.joint_circle_radius * std::sin(f.g.tilt) *
+                               (1 - std::cos(theta - 2 * kPi * piston / f.g.pistons));
+      const double slant = std::sqrt(1 - std::pow(off_bore(0) / f.g.piston_length, 2));
+      if (withdrawn / slant > walls.outside) {
+        walls.outside = withdrawn / slant;
+        walls.outside_deg = theta_deg;
+      }
       const double step = 1e-5;
       const double rate = omega * (approach(step) - approach(-step)) / (2 * step);
       if (-rate > walls.leaving) {
@@ -578,15 +589,16 @@ const Check kChecks[] = {
            dissipation, 1e3 / dissipation, 1e3 * f.walls->leaving, f.walls->leaving_deg, f.speed);
      }},
     {"wall-contact",
-     "the contact point of the pistons below half the stroke from A (outside the bore for more "
-     "than half of the turn) or behind the ring, in the chamber",
+     "the contact point of the piston that carries outside of its bore, which begins where the "
+     "joints come nearest to the block, or behind the ring, in the chamber",
      has_walls,
      [](const Facts& f) {
        const double ring = f.pump.piston.contact.value_or(f.g.piston_length);
-       return outside(f, "transfer", "contact_from_joint_mm", mm(f.derived.stroke) / 2, mm(ring),
-                      fmt::format("the joints enter the block by half the stroke of {:.4g} mm, and "
-                                  "the ring is {:.4g} mm from A",
-                                  mm(f.derived.stroke), mm(ring)),
+       return outside(f, "transfer", "contact_from_joint_mm", mm(f.walls->outside), mm(ring),
+                      fmt::format("the piston that carries stands {:.4g} mm out of a bore that "
+                                  "begins where the joints come nearest to the block (theta = "
+                                  "{:.4g} deg), and the ring is {:.4g} mm from A",
+                                  mm(f.walls->outside), f.walls->outside_deg, mm(ring)),
                       {kTenfold, kCentimetres, kMetres, kTenth});
      }},
     {"piston-touches-bore",
