@@ -114,7 +114,7 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
        the_case.pump.friction.regularization > 0 ? "Fc tanh(v/v_reg) + cv v" : "Fc sign(v) + cv v",
        "high-precision curves; power balance; written once in each model"},
       {"law of shaft friction (38)", "Td (1 - Ct) + Cs omega", "power balance of each model"},
-      {"rigid bodies, points A and B on the piston's axis, no clearance", "assumed",
+      {"rigid bodies, points A and B on the piston's axis, joints without clearance", "assumed",
        "not in this program: a rig or an elastic model"},
       {"frames, signs and the names of the reactions", "docs/theory.md",
        "free-body diagrams written in the tests; signs printed in the paper"}};
@@ -134,12 +134,17 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
          "each other; octoids, of which only the ratio of 1 is the same"});
   }
   if (!motion) {
-    inputs.push_back({"constant speed, equal for shaft and block (1:1)",
-                      the_case.pump.gear.contact == ToothContact::teeth
-                          ? "omega given; no torsion; constant lag of the teeth"
-                          : "omega given; no torsion, no play in the gear",
-                      "not in this program: a rig. Torque-driven run: the free shaft under the "
-                      "analytic torque keeps its speed"});
+    const TransferKind kind = the_case.pump.transfer.kind;
+    inputs.push_back(
+        {kind == TransferKind::cardan ? "constant speed of the shaft"
+                                      : "constant speed, equal for shaft and block (1:1)",
+         the_case.pump.gear.contact == ToothContact::teeth
+             ? "omega given; no torsion; constant lag of the teeth"
+         : kind == TransferKind::pistons ? "omega given; no torsion; frozen lag"
+         : kind == TransferKind::gear    ? "omega given; no torsion, no play in the gear"
+                                         : "omega given; no torsion, no play in the joint",
+         "not in this program: a rig. Torque-driven run: the free shaft under the "
+         "analytic torque keeps its speed"});
     return inputs;
   }
   const DriveSpec& drive = *the_case.drive;
