@@ -92,7 +92,9 @@ class ShippedDataTest(RegressTest):
         held = {str((f.parent / re.search(r'^case = "(.*)"', f.read_text(), re.M)[1]).resolve())
                 for f in (base.REPO / "reference_data" / "golden").glob("*/description.toml")}
         for case in (base.REPO / "cases").glob("*.toml"):
-            if "[pump]" in case.read_text():
+            text = case.read_text()
+            # With oil they have no turn at constant speed: transfer_command_test holds the motion.
+            if "[pump]" in text and not ('kind = "pistons"' in text and 'kind = "hydraulic"' in text):
                 self.assertIn(str(case.resolve()), held, "bentaxis reference golden CASE --out reference_data/golden/..")
 
     def test_filter(self):

@@ -86,6 +86,16 @@ class SimulateFmuTest(FmuTest):
                              f"rotor_fmi{version}.fmu")
             self.assertIn("unit_analytic.csv", report["files"])
 
+    def test_a_rotor_turns_a_pump_of_touching_pistons(self):
+        result = self.simulate("--fmu", self.unit("rotor"), "--communication-step", "1e-4", "--fmu-set", "torque=330",
+                               "--set", "block.axial_inertia_kg_mm2=2000", "--set", "drive.kind=speed",
+                               case="bap63_tapered_pistons")
+        self.assertIn("The trajectories agree", result.out)
+        rows = self.rows("simulation_analytic.csv")
+        # The pump brakes the rotor by less than the torque that drives it, and the block lags behind.
+        self.assertGreater(float(rows[-1]["shaft_rpm"]), float(rows[0]["shaft_rpm"]))
+        self.assertGreater(float(rows[-1]["theta_deg"]) - float(rows[-1]["psi_deg"]), 0.1)
+
     def test_connections_by_word(self):
         self.simulate("--model", "analytic", "--fmu", self.unit("motor"), "--connect", "shaft_angle=theta_deg",
                       "--connect", "shaft_speed=shaft_rpm", "--communication-step", "2e-5")
