@@ -72,6 +72,17 @@ class ExternalBenchmarksTest(unittest.TestCase):
         self.assertIn("a: twice in the expected numbers", self.compared([said, said], {"a": 1})[1])
         self.assertIn("n: no number from outside", self.compared([said], {"a": 1}, ["m", "n"])[1])
 
+    def test_a_module_needs_a_row_or_a_reason(self):
+        modules = benchmarks.modules_of(REPO)
+        self.assertTrue({"hydraulics", "core/pump", "studies/motion", "interfaces/fmu"} <= modules)
+        said = json.loads(benchmarks.EXPECTED.read_text())
+        self.assertEqual(benchmarks.without_row(said, modules), [])
+        self.assertIn("new: has no row from outside and no reason why not", benchmarks.without_row(said, modules | {"new"}))
+        said["without"]["compare"] = "none"
+        self.assertIn("compare: has rows and a reason why it has none", benchmarks.without_row(said, modules))
+        del said["without"]["report"], said["without"]["compare"]
+        self.assertIn("report: has no row from outside and no reason why not", benchmarks.without_row(said, modules))
+
     def program(self, numbers, *options):
         benchmarks.measured = lambda build: numbers
         (self.folder / "bench").mkdir(exist_ok=True)

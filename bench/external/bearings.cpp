@@ -46,6 +46,11 @@ Numbers bearings() {
   numbers.push_back({"iso281.ball.revolutions", ball});
   numbers.push_back({"iso281.ball.hours", ball * 1e6 / 60 / 650});
   numbers.push_back({"iso281.roller.revolutions", study::rating_life(53.98, 1.3 * 5) * 0.6});
+  const double skf = study::rating_life(55.3, 10, study::kBallLifeExponent);
+  numbers.push_back({"iso281.6309.revolutions", skf});
+  numbers.push_back({"iso281.6309.hours", skf * 1e6 / 60 / 3000});
+  numbers.push_back({"iso281.6309.hours_at_4_kN",
+                     study::rating_life(55.3, 4, study::kBallLifeExponent) * 1e6 / 60 / 1800});
   return numbers;
 }
 

@@ -28,10 +28,11 @@ int main() {
                           {"oil", oil},
                           {"regression", regression},
                           {"sobol", sobol},
-                          {"gum_supplement", gum_supplement},
+                          {"propagation", propagation},
                           {"posterior", posterior},
                           {"stiff", stiff},
                           {"bearings", bearings},
+                          {"judgements", judgements},
                           {"modelica", modelica}};
   int status = 0;
   for (const Group& group : groups) try {

@@ -1,4 +1,4 @@
-// Numbers that reference_data/external/expected.json has a number from outside for. What is
+// Numbers that bench/external/expected.json has a number from outside for. What is
 // expected stands there alone: no source here knows it.
 #pragma once
 
@@ -20,8 +20,9 @@ Numbers oscillator();            ///< with backlash, by matching pieces, against
 Numbers oil();                   ///< its viscosity
 Numbers regression();            ///< NIST's nonlinear regressions
 Numbers sobol();                 ///< functions whose variance is known part by part
-Numbers gum_supplement();        ///< JCGM 101:2008, 9.2 to 9.4
+Numbers propagation();           ///< of distributions: JCGM 101, JCGM 102, NPL
 Numbers posterior();             ///< the sampler of identification
+Numbers judgements();            ///< of what compares and screens
 Numbers modelica();              ///< examples of the Modelica library
 Numbers bearings();              ///< ISO 281, ISO/TS 16281
 Numbers stiff();                 ///< Test Set for IVP Solvers
