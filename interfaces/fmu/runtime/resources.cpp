@@ -65,7 +65,24 @@ void read_choice(const std::filesystem::path& file, Resources& all) {
 
 }  // namespace
 
+namespace {
+
+#ifdef _WIN32
+constexpr bool kHasDrives = true;
+#else
+constexpr bool kHasDrives = false;
+#endif
+
+// "C:\folder" or "C:/folder".
+bool begins_with_drive(const std::string& path) {
+  return path.size() > 1 && path[1] == ':' &&
+         ((path[0] >= 'A' && path[0] <= 'Z') || (path[0] >= 'a' && path[0] <= 'z'));
+}
+
+}  // namespace
+
 std::filesystem::path path_of_uri(const std::string& uri) {
+  if (kHasDrives && begins_with_drive(uri)) return uri;
   const auto colon = uri.find(':');
   const auto slash = uri.find('/');
   if (colon == std::string::npos || slash < colon) return uri;  // no scheme
@@ -80,6 +97,8 @@ std::filesystem::path path_of_uri(const std::string& uri) {
       throw InputError("resources \"" + uri + "\": must be a file of this computer");
     rest = rest.substr(path);
   }
+  if (kHasDrives && rest.starts_with('/') && begins_with_drive(rest.substr(1)))
+    rest.erase(0, 1);  // file:///C:/folder
   return decoded(rest, uri);
 }
 

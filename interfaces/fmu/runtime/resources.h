@@ -16,7 +16,8 @@ struct Resources {
 };
 
 /// A file URI (file:///folder, file:/folder, file://localhost/folder) with percent encoding, as FMI
-/// 2 gives the folder of resources; a path without a scheme is one too.
+/// 2 gives the folder of resources; a path without a scheme is one too. On Windows file:///C:/folder
+/// is the folder C:/folder.
 /// @throws InputError
 std::filesystem::path path_of_uri(const std::string& uri);
 
