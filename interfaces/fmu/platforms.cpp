@@ -19,15 +19,14 @@ namespace fs = std::filesystem;
 
 struct Facts {
   const char* name;      // as FMI 3 names it, and its folder there
-  const char* folder_2;  // FMI 2's; null: FMI 2 has none
+  const char* folder_2;  // FMI 2's
   const char* ending;
   const char* words;
 };
 // In the order of Platform.
-constexpr std::array<Facts, 3> kFacts = {
+constexpr std::array<Facts, 2> kFacts = {
     {{"x86_64-linux", "linux64", ".so", "Linux on x86-64"},
-     {"x86_64-windows", "win64", ".dll", "Windows on x86-64"},
-     {"aarch64-linux", nullptr, ".so", "Linux on ARM (aarch64)"}}};
+     {"x86_64-windows", "win64", ".dll", "Windows on x86-64"}}};
 
 constexpr InputKind kLibrary = {"the library of an FMU", 64 * kMebibyte};
 
@@ -91,12 +90,10 @@ std::vector<std::string> platform_names() {
   return names;
 }
 
-std::vector<Platform> installed_platforms(Version version) {
+std::vector<Platform> installed_platforms() {
   std::vector<Platform> platforms;
   for (std::size_t i = 0; i < kFacts.size(); ++i)
-    if ((version == Version::fmi3 || kFacts[i].folder_2 != nullptr) &&
-        is_there(static_cast<Platform>(i)))
-      platforms.push_back(static_cast<Platform>(i));
+    if (is_there(static_cast<Platform>(i))) platforms.push_back(static_cast<Platform>(i));
   return platforms;
 }
 
@@ -107,8 +104,6 @@ std::vector<PlatformLibrary> platform_libraries(Version version,
     const std::string given = std::string("--platforms ") + facts_of(*it).name;
     if (std::find(platforms.begin(), it, *it) != it)
       throw InputError(given + ": is specified more than once");
-    if (version == Version::fmi2 && facts_of(*it).folder_2 == nullptr)
-      throw InputError(given + ": FMI 2.0 has no folder for it; use --fmi 3");
     if (!is_there(*it))
       throw InputError(given +
                        ": its library is not installed; scripts/build_fmu_platforms builds it");

@@ -16,12 +16,11 @@ struct PlatformLibrary {
   std::string needs;     ///< in words: "Linux on x86-64 with glibc 2.35 or newer"
 };
 
-/// @throws InputError where a platform is given more than once, not installed, or one that the
-/// version has no folder for
+/// @throws InputError where a platform is given more than once or is not installed
 std::vector<PlatformLibrary> platform_libraries(Version version,
                                                 const std::vector<Platform>& platforms);
 
-/// "A, B and C": what the FMU runs on.
+/// "A and B": what the FMU runs on.
 std::string needs_of(const std::vector<PlatformLibrary>& libraries);
 
 }  // namespace bentaxis::fmu

@@ -10,13 +10,8 @@
 
 #include <cerrno>
 
-#if defined(__x86_64__)
-#define BENTAXIS_OLDEST "GLIBC_2.2.5"
+#define BENTAXIS_OLDEST "GLIBC_2.2.5"  // of x86-64
 constexpr int kStatVersion = 1;
-#elif defined(__aarch64__)
-#define BENTAXIS_OLDEST "GLIBC_2.17"
-constexpr int kStatVersion = 0;
-#endif
 
 // NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming): names of the linker
 extern "C" {
