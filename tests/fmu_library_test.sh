@@ -22,7 +22,8 @@ shown=$(nm -D --defined-only "$library" | awk '{print $NF}' | sed 's/@.*//')
 others=$(grep -vE '^fmi[23][A-Z]' <<< "$shown" || true)
 [ -z "$others" ] || say "shows $others"
 for version in 2 3; do
-  for name in $(grep -oE "X\(fmi${version}[A-Za-z0-9]+\)" "$sources/fmu/interface/fmi$version.h" | tr -d 'X()'); do
+  names=$(grep -oE "X\(fmi${version}[A-Za-z0-9]+\)" "$sources/interfaces/fmu/interface/fmi$version.h" | tr -d 'X()')
+  for name in $names; do
     grep -qx "$name" <<< "$shown" || say "lacks $name"
   done
 done
@@ -30,6 +31,8 @@ unknown=$(nm -D --undefined-only "$library" | awk '$1 == "U" {print $2}' | grep 
 [ -z "$unknown" ] || say "needs symbols that are not libc's: $unknown"
 # The version of glibc that the documents state is the one that the symbols need.
 least=$(nm -D --undefined-only "$library" | grep -oE '@GLIBC_[0-9.]+' | sed 's/@GLIBC_//' | sort -V | tail -n 1)
+newest=2.28  # of the oldest systems that simulators are still delivered for
+[ "$(printf '%s\n' "$least" $newest | sort -V | tail -n 1)" = $newest ] || say "needs glibc $least, which is newer than $newest"
 for page in fmu limits; do
   stated=$(grep -oE 'glibc [0-9]+\.[0-9]+' "$sources/docs/$page.md" | sort -u)
   [ "$stated" = "glibc $least" ] || say "docs/$page.md states \"$stated\", the library needs glibc $least"

@@ -182,7 +182,8 @@ class CaseReader {
 
   void read_curve(const TableReader& in, const Parameter& parameter, const CurveField& field,
                   const std::string& name) {
-    const std::filesystem::path file = result_.file.parent_path() / name;
+    const std::filesystem::path file =
+        result_.file.parent_path() / std::u8string(name.begin(), name.end());
     if (!std::filesystem::exists(file)) in.fail(parameter.key, "no such file: " + file.string());
     if (std::filesystem::is_directory(file))
       in.fail(parameter.key, "is a directory: " + file.string());

@@ -423,7 +423,7 @@ ForeignTable unchecked_table_of(std::string content, const std::filesystem::path
     return std::string_view(content).substr(0, what.size()) == what;
   };
   if (starts("PK\x03\x04")) return foreign::read_workbook(file, content, sheet);
-  std::string extension = file.extension();
+  std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (starts("MATLAB ") || starts("\x89HDF") ||

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/fmu/unit.h"
@@ -18,6 +19,7 @@ namespace fs = std::filesystem;
 struct Options {
   CaseOption the_case;
   std::string out, version = "2", drive;
+  std::vector<fmu::Platform> platforms;
   fmu::UnitOptions unit;
 };
 
@@ -57,8 +59,7 @@ fs::path checked_place(const std::string& out) {
 
 void print(const fs::path& file, const Options& options, const fmu::UnitSummary& has) {
   std::cout << file.string() << ": FMI " << options.version
-            << ".0, model exchange and co-simulation, Linux on x86-64 with glibc " << has.glibc
-            << " or newer\n"
+            << ".0, model exchange and co-simulation, " << has.needs << "\n"
             << "drive: " << sentence_of(options.unit.drive) << "\ninputs:";
   for (const std::string& input : has.inputs) std::cout << " " << input;
   if (has.inputs.empty()) std::cout << " none";
@@ -77,6 +78,8 @@ int make_unit(Options& options) {
   const fs::path place = checked_place(options.out);
   const Case the_case = options.the_case.read();
   options.unit.version = options.version == "3" ? fmu::Version::fmi3 : fmu::Version::fmi2;
+  options.unit.platforms =
+      options.platforms.empty() ? fmu::installed_platforms() : options.platforms;
   options.unit.drive = drive_of(options.drive, the_case);
   OutputFolder folder(place.has_parent_path() ? place.parent_path() : fs::path("."));
   folder.add(place.filename().string(), fmu::unit_archive(the_case, options.unit));
@@ -106,6 +109,10 @@ Command add_fmu_command(CommandParser program) {
               "torque, or [drive] of the case")
       .one_of({"speed", "torque", "case"})
       .text("speed|torque|case [speed; case where its [drive] is a torque or a motor]");
+  command
+      .choices("--platforms", options->platforms, fmu::platform_names(),
+               "whose libraries are in the FMU")
+      .text("x86_64-linux,x86_64-windows [all that are installed]");
   command
       .option(
           "--accuracy", options->unit.tolerance,

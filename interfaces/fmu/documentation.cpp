@@ -46,7 +46,8 @@ void add_table(pugi::xml_node body, const std::string& title, Causality causalit
 
 }  // namespace
 
-std::string documentation_page(const Description& description, const UnitOptions& options) {
+std::string documentation_page(const Description& description, const UnitOptions& options,
+                               const std::string& needs) {
   pugi::xml_document document;
   document.append_child(pugi::node_doctype).set_value("html");
   pugi::xml_node html = document.append_child("html");
@@ -63,9 +64,9 @@ std::string documentation_page(const Description& description, const UnitOptions
   say(body, "p",
       "Co-simulation integrates to " + number_text(description.tolerance) +
           " of the scale of each state per step, for any length of the communication steps. The "
-          "case is in resources/case.toml. For Linux on x86-64 with glibc " +
-          needed_glibc() +
-          " or newer. Angles are those of the paper (Roccatello "
+          "case is in resources/case.toml. For " +
+          needs +
+          ". Angles are those of the paper (Roccatello "
           "and Nervegna 2009); forces act on the body that is named first, at its point, in its "
           "frame.");
   add_table(body, "Inputs", Causality::input, description.variables);

@@ -8,6 +8,8 @@
 namespace bentaxis::fmu {
 
 /// HTML: what the FMU is, its inputs, parameters and outputs with their units.
-std::string documentation_page(const Description& description, const UnitOptions& options);
+/// @param needs  what it runs on, in words
+std::string documentation_page(const Description& description, const UnitOptions& options,
+                               const std::string& needs);
 
 }  // namespace bentaxis::fmu

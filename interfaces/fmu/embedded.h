@@ -7,8 +7,6 @@ namespace bentaxis::fmu {
 
 /// The shared library of an FMU, for Linux on x86-64.
 std::string embedded_library();
-/// The least version of glibc that has all symbols the library needs: "2.35".
-std::string needed_glibc();
 /// The licence of this program, and what is joined to the library under which licence.
 std::string embedded_licence();
 std::string embedded_notices();

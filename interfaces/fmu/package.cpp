@@ -12,6 +12,7 @@
 #include "dependencies.h"
 #include "documentation.h"
 #include "embedded.h"
+#include "platforms.h"
 #include "runtime/plant.h"
 
 namespace bentaxis::fmu {
@@ -120,10 +121,6 @@ void require_text(const KeptCase& kept) {
                        ": is a workbook or a .mat file, which an FMU cannot read: save it as CSV");
 }
 
-const char* folder_of_library(Version version) {
-  return version == Version::fmi2 ? "binaries/linux64/" : "binaries/x86_64-linux/";
-}
-
 }  // namespace
 
 std::string unit_archive(const Case& the_case, const UnitOptions& options) {
@@ -131,6 +128,8 @@ std::string unit_archive(const Case& the_case, const UnitOptions& options) {
   alone.uncertainty = {};  // a unit has one value of each
   const KeptCase kept = kept_case(alone);
   require_text(kept);
+  const std::vector<PlatformLibrary> libraries =
+      platform_libraries(options.version, options.platforms);
   std::string why_not;  // of unit_summary()
   const UnitChoice chosen = choice_of(the_case, options, why_not);
   Description description = description_of(the_case, options, chosen);
@@ -138,21 +137,24 @@ std::string unit_archive(const Case& the_case, const UnitOptions& options) {
   description.token = token_of(identity(kept, choice, description.variables));
   std::vector<ArchiveFile> files;
   files.push_back({"modelDescription.xml", description_xml(options.version, description)});
-  files.push_back({folder_of_library(options.version) + std::string(kModelIdentifier) + ".so",
-                   embedded_library(), true});
+  for (const PlatformLibrary& library : libraries)
+    files.push_back({library.place, library.bytes, true});
   files.push_back({"resources/case.toml", kept.text});
   for (const KeptCase::Curve& curve : kept.curves)
     files.push_back({"resources/" + curve.name, curve.bytes});
   files.push_back({"resources/unit.txt", choice + "token " + description.token + "\n"});
-  files.push_back({"documentation/index.html", documentation_page(description, options)});
+  files.push_back(
+      {"documentation/index.html", documentation_page(description, options, needs_of(libraries))});
   files.push_back({"documentation/licenses/license.txt", embedded_licence()});
-  files.push_back({"documentation/licenses/third_party.txt", embedded_notices()});
+  std::string notices = embedded_notices();
+  for (const PlatformLibrary& library : libraries) notices += library.licences;
+  files.push_back({"documentation/licenses/third_party.txt", notices});
   return zip_archive(files);
 }
 
 UnitSummary unit_summary(const Case& the_case, const UnitOptions& options) {
   UnitSummary has;
-  has.glibc = needed_glibc();
+  has.needs = needs_of(platform_libraries(options.version, options.platforms));
   const UnitChoice choice = choice_of(the_case, options, has.no_start_torque);
   for (const Variable& variable : variables_of(the_case, choice)) {
     if (variable.role == Role::input && variable.input == Input::torque)

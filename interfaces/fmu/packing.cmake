@@ -2,12 +2,15 @@
 # variables is what that has.
 bentaxis_library(fmu STANDARD 20
   SOURCES archive.cpp dependencies.cpp description_fmi2.cpp description_fmi3.cpp description_parts.cpp documentation.cpp
-    embedded.cpp package.cpp units.cpp $<TARGET_OBJECTS:bentaxis_fmu_plant>)
+    embedded.cpp package.cpp platforms.cpp units.cpp $<TARGET_OBJECTS:bentaxis_fmu_plant>)
 target_link_libraries(bentaxis_fmu PUBLIC bentaxis::pump
   PRIVATE bentaxis::analytic bentaxis::coupled bentaxis::files bentaxis::hydraulics bentaxis::results
     pugixml::pugixml zip)
 target_compile_definitions(bentaxis_fmu PRIVATE BENTAXIS_VERSION="${PROJECT_VERSION}")
 bentaxis_compile_fast(bentaxis_fmu)
+
+# Libraries for further platforms, where scripts/build_fmu_platforms has built them.
+install(DIRECTORY ${PROJECT_BINARY_DIR}/modules/fmu DESTINATION ${CMAKE_INSTALL_LIBDIR}/bentaxis OPTIONAL)
 
 # What the archive carries: the library of the unit, the licence, and those of what is joined to the library.
 set(library ${CMAKE_CURRENT_BINARY_DIR}/bentaxis_fmu.so)

@@ -88,7 +88,8 @@ function(bentaxis_umbrella room)
 endfunction()
 
 # A source that uses SUNDIALS, as an object with SUNDIALS joined to it statically and out of sight
-# (scripts/cmake/isolate.cmake says why). It sees the headers of its room alone.
+# (scripts/cmake/isolate.cmake says why). It sees the headers of its room alone. Where Simbody is not built in, SUNDIALS
+# is linked as usual: <variable>_needs has its libraries.
 #   bentaxis_with_sundials(<target> <source> <variable that receives the object>)
 function(bentaxis_with_sundials name source variable)
   set(sundials SUNDIALS::cvodes_static SUNDIALS::nvecserial_static SUNDIALS::sunmatrixdense_static
@@ -97,10 +98,19 @@ function(bentaxis_with_sundials name source variable)
   foreach(library IN LISTS sundials)
     list(APPEND archives $<TARGET_FILE:${library}>)
   endforeach()
-  add_library(${name} STATIC ${source})
+  set(kind STATIC)
+  if(BENTAXIS_ONLY_FMU_LIBRARY)
+    set(kind OBJECT)
+  endif()
+  add_library(${name} ${kind} ${source})
   bentaxis_target(${name} 20)
   target_link_libraries(${name} PRIVATE ${sundials})
   target_include_directories(${name} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/include)
+  if(BENTAXIS_ONLY_FMU_LIBRARY)
+    set(${variable} $<TARGET_OBJECTS:${name}> PARENT_SCOPE)
+    set(${variable}_needs ${sundials} PARENT_SCOPE)
+    return()
+  endif()
   set(isolated ${CMAKE_CURRENT_BINARY_DIR}/${name}_with_sundials.o)
   add_custom_command(
     OUTPUT ${isolated}

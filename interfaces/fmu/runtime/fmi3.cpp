@@ -77,7 +77,7 @@ fmi3Instance instantiate(const char* function, fmi3String name, fmi3String token
       if (token == nullptr) throw Refused("the instantiation token is missing");
       if (path == nullptr) throw Refused("the path of resources is missing");
       if (event_mode) throw Refused("co-simulation has no event mode: hasEventMode is false");
-      return new Instance(path, token, kind, log);
+      return new Instance(bentaxis::fmu::path_of_text(path), token, kind, log);
     } catch (const std::exception& error) {
       log.say(Status::error, std::string(function) + ": " + error.what());
     }

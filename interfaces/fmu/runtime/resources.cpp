@@ -65,10 +65,31 @@ void read_choice(const std::filesystem::path& file, Resources& all) {
 
 }  // namespace
 
+namespace {
+
+#ifdef _WIN32
+constexpr bool kHasDrives = true;
+#else
+constexpr bool kHasDrives = false;
+#endif
+
+// "C:\folder" or "C:/folder".
+bool begins_with_drive(const std::string& path) {
+  return path.size() > 1 && path[1] == ':' &&
+         ((path[0] >= 'A' && path[0] <= 'Z') || (path[0] >= 'a' && path[0] <= 'z'));
+}
+
+}  // namespace
+
+std::filesystem::path path_of_text(const std::string& text) {
+  return std::u8string(text.begin(), text.end());
+}
+
 std::filesystem::path path_of_uri(const std::string& uri) {
+  if (kHasDrives && begins_with_drive(uri)) return path_of_text(uri);
   const auto colon = uri.find(':');
   const auto slash = uri.find('/');
-  if (colon == std::string::npos || slash < colon) return uri;  // no scheme
+  if (colon == std::string::npos || slash < colon) return path_of_text(uri);  // no scheme
   std::string scheme = uri.substr(0, colon);
   for (char& c : scheme) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
   if (scheme != "file") throw InputError("resources \"" + uri + "\": must be a file URI");
@@ -80,7 +101,9 @@ std::filesystem::path path_of_uri(const std::string& uri) {
       throw InputError("resources \"" + uri + "\": must be a file of this computer");
     rest = rest.substr(path);
   }
-  return decoded(rest, uri);
+  if (kHasDrives && rest.starts_with('/') && begins_with_drive(rest.substr(1)))
+    rest.erase(0, 1);  // file:///C:/folder
+  return path_of_text(decoded(rest, uri));
 }
 
 Resources read_resources(const std::filesystem::path& folder) {

@@ -7,8 +7,8 @@
 
 namespace bentaxis {
 
-/// Beside the program, where that is installed; where the library was installed or built. They need
-/// not exist.
+/// Beside the program or, in Python, beside the module, where that is installed; where the library
+/// was installed or built. They need not exist.
 std::vector<std::filesystem::path> module_folders();
 
 }  // namespace bentaxis

@@ -1,0 +1,26 @@
+// The platforms that an FMU can be for. Internal.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bentaxis/fmu/unit.h"
+
+namespace bentaxis::fmu {
+
+/// What is in the archive for one platform.
+struct PlatformLibrary {
+  std::string place;     ///< of the library in the archive
+  std::string bytes;     ///< of the library
+  std::string licences;  ///< of what is joined to it on this platform only; may be empty
+  std::string needs;     ///< in words: "Linux on x86-64 with glibc 2.35 or newer"
+};
+
+/// @throws InputError where a platform is given more than once or is not installed
+std::vector<PlatformLibrary> platform_libraries(Version version,
+                                                const std::vector<Platform>& platforms);
+
+/// "A and B": what the FMU runs on.
+std::string needs_of(const std::vector<PlatformLibrary>& libraries);
+
+}  // namespace bentaxis::fmu
