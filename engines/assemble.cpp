@@ -275,8 +275,8 @@ void Assembler::turn_block() {
   joint_couple_ = between_axes();
   if (pump_.transfer.kind != TransferKind::cardan) return;
   const double phase = pump_.transfer.cardan->phase;
-  const Vector on_shaft(std::cos(phase), std::sin(phase), 0);
-  const Vector on_block(-std::sin(phase), std::cos(phase), 0);
+  const Vector on_shaft(std::cos(phase), -std::sin(phase), 0);
+  const Vector on_block(std::sin(phase), std::cos(phase), 0);
   const FrameMotion shaft = moved({}, mechanism_.bodies[kShaft], &coordinates_[kShaft]);
   const auto arm_of = [](const FrameMotion& frame, const Vector& local) {
     FrameMotion arm;  // a point at distance 1 of a centre at rest

@@ -300,7 +300,7 @@ std::string engine_text(const EngineComparison& engines) {
   text += aligned(engine_table(engines), "{:g}");
   if (!engines.sweep.empty()) {
     const report::Section section = effort_section(engines);
-    text += "\n" + section.title + "\n" + aligned(section.table, "{:.2g}");
+    text += "\n" + section.title + "\n" + aligned(section.table, "{:.4g}");
   }
   return text;
 }
