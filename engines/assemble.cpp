@@ -42,14 +42,10 @@ void refuse(const Case& the_case, const std::string& what) {
 
 void check(const Case& the_case) {
   const PumpParameters& pump = the_case.pump;
-  if (pump.transfer.kind != TransferKind::gear &&
-      pump.transfer.kind != TransferKind::constant_velocity)
-    refuse(the_case, "transfer of kind " + to_string(pump.transfer.kind));
-  if (pump.piston.contact) refuse(the_case, "[piston] contact_mm: Rc acts at B");
+  if (pump.transfer.kind == TransferKind::pistons)
+    refuse(the_case, "transfer of kind pistons: its walls are contacts");
   if (pump.transfer.kind == TransferKind::gear && pump.gear.is_compliant())
     refuse(the_case, "compliant contact of teeth");
-  if (pump.transfer.kind == TransferKind::gear && pump.gear.flanks == Flanks::two)
-    refuse(the_case, "second flank of a tooth");
 }
 
 // The pressure on the lands of a port plate: a wrench on the block in S2 about O2.
@@ -95,7 +91,8 @@ class Assembler {
         pump_(the_case.pump),
         assumptions_(assumptions),
         samples_(samples),
-        n_(pump_.geometry.pistons) {
+        n_(pump_.geometry.pistons),
+        trace_(the_case.pressure) {
     axes2_ = Eigen::AngleAxisd(-pump_.geometry.tilt, Vector::UnitX()).toRotationMatrix();
     origin2_ = Vector(0, 0, pump_.geometry.axis_offset);
   }
@@ -132,37 +129,48 @@ class Assembler {
   }
   void add_state(std::size_t row);
   void close_loop(int k, const FrameMotion& shaft, const FrameMotion& block);
+  void turn_block();
+  // Parts of a tooth force of size 1: what turns the block, what pushes the gears apart.
+  Vector turning_part() const {
+    return -direction() * std::cos(pump_.gear.pressure_angle) * Vector::UnitX();
+  }
+  Vector separating_part() const { return std::sin(pump_.gear.pressure_angle) * between_axes(); }
+  double direction() const { return samples_.omega < 0 ? -1 : 1; }
   Vector line_of_action() const;
   Vector mesh_point() const;
   Vector between_axes() const { return (Vector::UnitZ() + axes2_.col(2)).normalized(); }
   bool meshes() const {
     return pump_.transfer.kind == TransferKind::gear && assumptions_.gear == BlockDrive::mesh;
   }
-  bool has_joint() const { return pump_.transfer.kind == TransferKind::constant_velocity; }
+  bool has_joint() const { return pump_.transfer.is_joint(); }
+  bool has_two_flanks() const { return pump_.gear.flanks == Flanks::two; }
 
   const Case& case_;
   const PumpParameters& pump_;
   const Assumptions& assumptions_;
   const Samples& samples_;
   int n_;
+  PressureTrace trace_;
   Eigen::Matrix3d axes2_;  // of S2, columns
   Vector origin2_;
   Wrench lands_ = Wrench::Zero();
+  Vector joint_couple_ = Vector::Zero();  // direction, where a joint turns the block
   Mechanism mechanism_;
   std::vector<Coordinate> coordinates_;  // of all bodies
 };
 
 void Assembler::add_bodies() {
   const Geometry& g = pump_.geometry;
+  const Freedom turning{true, Vector::UnitZ(), true};
   Body shaft{"shaft"};
-  shaft.freedoms = {{}};
+  shaft.freedoms = {turning};
   shaft.mass = pump_.shaft.mass;
   shaft.centre = Vector(0, 0, pump_.shaft.centre_of_mass_z);
   shaft.inertia = Vector::Constant(pump_.shaft.axial_inertia);
   Body block{"block"};
   block.place = origin2_;
   block.axes = axes2_;
-  block.freedoms = {{}};
+  block.freedoms = {turning};
   block.mass = pump_.block.mass;
   block.centre = Vector(0, 0, pump_.block.centre_of_mass_z);
   block.inertia = Vector::Constant(pump_.block.axial_inertia);
@@ -211,18 +219,25 @@ void Assembler::name_forces() {
       const std::string name = channel(layout.Rs(k, i));
       read(name, add_action(name, kFirstPiston + k, kShaft));
     }
+  for (int k = 0; k < n_; ++k)
+    mechanism_.loops.push_back({kFirstPiston + k, kShaft,
+                                Vector(0, 0, -pump_.geometry.piston_length), joint_on_shaft(k),
+                                3 * k});
   const std::string drive = channel(layout.Td());
   read(drive, add_action(drive, kShaft, -1));
   if (meshes()) {
     const std::string name = channel(layout.Rcs());
     const int place = add_action(name, kBlock, kShaft);
+    mechanism_.actions[place].two_sided = has_two_flanks();
     read(name, place);
     const Wrench at_mesh = force_at(mesh_point() - origin2_, line_of_action());
     read(channel(layout.Tcs()), place, at_mesh.tail<3>().dot(axes2_.col(2)));
   } else if (has_joint()) {
     const int place = add_action("couple of the joint", kBlock, kShaft);
-    for (int i = 0; i < 3; ++i)
-      read(channel(layout.TcsJoint(i)), place, axes2_.col(i).dot(between_axes()));
+    for (int i = 0; i < 3; ++i) {
+      read(channel(layout.TcsJoint(i)), place);
+      mechanism_.readings.back().component = couple(axes2_.col(i));
+    }
   } else {
     const std::string name = channel(layout.Tcs());
     read(name, add_action(name, kBlock, -1));
@@ -247,11 +262,53 @@ Vector Assembler::mesh_point() const {
 }
 
 // The shaft's tooth moves along -x there; the pressure angle turns its push towards the normal of
-// the plane in which the cones roll. As printed, the whole of it changes its sign with the speed.
+// the plane in which the cones roll. With one flank, as printed, the whole of it changes its sign
+// with the speed; with two the separating part always pushes.
 Vector Assembler::line_of_action() const {
-  const double ap = pump_.gear.pressure_angle;
-  const Vector push = -std::cos(ap) * Vector::UnitX() + std::sin(ap) * between_axes();
-  return samples_.omega < 0 ? Vector(-push) : push;
+  return turning_part() + (has_two_flanks() ? 1 : direction()) * separating_part();
+}
+
+// The block as the shaft turns it. A universal joint: the arm of the shaft's fork, which lies along
+// x1 at the joint's phase, stays across that of the block's, which lies along y2 then.
+void Assembler::turn_block() {
+  coordinates_[kBlock] = coordinates_[kShaft];
+  joint_couple_ = between_axes();
+  if (pump_.transfer.kind != TransferKind::cardan) return;
+  const double phase = pump_.transfer.cardan->phase;
+  const Vector on_shaft(std::cos(phase), -std::sin(phase), 0);
+  const Vector on_block(std::sin(phase), std::cos(phase), 0);
+  const FrameMotion shaft = moved({}, mechanism_.bodies[kShaft], &coordinates_[kShaft]);
+  const auto arm_of = [](const FrameMotion& frame, const Vector& local) {
+    FrameMotion arm;  // a point at distance 1 of a centre at rest
+    const Vector at = frame.axes * local;
+    arm.origin = at;
+    arm.velocity = frame.turning.cross(at);
+    arm.acceleration = frame.turning_rate.cross(at) + frame.turning.cross(frame.turning.cross(at));
+    return arm;
+  };
+  const FrameMotion one = arm_of(shaft, on_shaft);
+  Coordinate& psi = coordinates_[kBlock];
+  const auto other = [&] { return arm_of(moved({}, mechanism_.bodies[kBlock], &psi), on_block); };
+  const Vector z2 = axes2_.col(2);
+  constexpr int kTries = 50;
+  double slope = 1;
+  for (int tried = 0; tried < kTries; ++tried) {
+    const Vector at = other().origin;
+    slope = one.origin.dot(z2.cross(at));
+    const double step = one.origin.dot(at) / slope;
+    psi.position -= step;
+    if (std::abs(step) < 1e-15) break;
+  }
+  psi.velocity = psi.acceleration = 0;
+  slope = one.origin.dot(z2.cross(other().origin));
+  psi.velocity = -one.velocity.dot(other().origin) / slope;
+  const FrameMotion second = other();
+  psi.acceleration = -(one.acceleration.dot(second.origin) + one.origin.dot(second.acceleration) +
+                       2 * one.velocity.dot(second.velocity)) /
+                     slope;
+  // The cross carries a couple across both arms.
+  joint_couple_ = one.origin.cross(second.origin).normalized();
+  if (joint_couple_.dot(z2) < 0) joint_couple_ *= -1;
 }
 
 // Slide and tilts of a piston that put its A onto the shaft's, with their rates.
@@ -309,8 +366,9 @@ void Assembler::close_loop(int k, const FrameMotion& shaft, const FrameMotion& b
 
 void Assembler::add_state(std::size_t row) {
   const double omega = samples_.omega;
-  coordinates_[kShaft] =
-      coordinates_[kBlock] = {radians(std::fmod(samples_.theta_deg[row], 360.0)), omega, 0};
+  coordinates_[kShaft] = {radians(std::fmod(samples_.theta_deg[row], 360.0)), omega, 0};
+  turn_block();
+  const double block_omega = coordinates_[kBlock].velocity;
   const FrameMotion shaft = moved({}, mechanism_.bodies[kShaft], coordinates_.data());
   const FrameMotion block = moved({}, mechanism_.bodies[kBlock], &coordinates_[kBlock]);
   State state;
@@ -325,7 +383,11 @@ void Assembler::add_state(std::size_t row) {
     close_loop(k, shaft, block);
     const FrameMotion piston =
         moved(block, mechanism_.bodies[kFirstPiston + k], &coordinates_[2 + k * piston_freedoms()]);
-    const double pressure = samples_.chamber_pressure[row * n_ + k];
+    // Chambers turn with the block.
+    const double pressure =
+        pump_.transfer.kind == TransferKind::cardan
+            ? trace_(piston_angle_deg(coordinates_[kBlock].position / kRadPerDegree, k + 1, n_))
+            : samples_.chamber_pressure[row * n_ + k];
     const double speed = piston.velocity.dot(z2);
     double rubs = 0;
     if (assumptions_.piston_friction) {
@@ -342,17 +404,23 @@ void Assembler::add_state(std::size_t row) {
     state.loads[kBlock] += (pump_.block.bottom_area * pressure - rubs) * along_bore;
     const Vector joint = shaft.point(joint_on_shaft(k));
     for (int i = 0; i < 3; ++i) state.actions.push_back(force_at(joint, unit2(i)));
-    for (int i = 0; i < 2; ++i) bores.push_back(force_at(piston.origin, unit2(i)));
+    const Vector contact =
+        pump_.piston.contact
+            ? piston.point({0, 0, *pump_.piston.contact - pump_.geometry.piston_length})
+            : piston.origin;
+    for (int i = 0; i < 2; ++i) bores.push_back(force_at(contact, unit2(i)));
   }
   state.loads[kBlock] += lands_ + pump_.block.spring_force * force_at(origin2_, z2) -
-                         friction.block_viscous * omega * couple(z2);
+                         friction.block_viscous * block_omega * couple(z2);
   state.loads[kShaft] -= pump_.block.spring_force * force_at(origin2_, z2) +
                          friction.shaft_viscous * omega * couple(z1);
   // Part of the drive torque is lost in proportion.
   state.actions.emplace_back(friction.shaft_torque_factor * couple(z1));
   state.actions.push_back(meshes()      ? force_at(mesh_point(), line_of_action())
-                          : has_joint() ? couple(between_axes())
+                          : has_joint() ? couple(joint_couple_)
                                         : couple(z2));
+  if (meshes() && has_two_flanks())
+    state.other_sides = {force_at(mesh_point(), turning_part() - separating_part())};
   state.supports = std::move(bores);
   state.supports.push_back(force_at(origin2_, z2));
   for (int i = 0; i < 2; ++i) state.supports.push_back(couple(unit2(i)));

@@ -86,22 +86,29 @@ void write(const Mechanism& m, const Arrays& to) {
     for (const Freedom& freedom : body.freedoms) {
       *at.freedom_body++ = static_cast<std::int32_t>(i);
       *at.freedom_turns++ = freedom.turns ? 1 : 0;
+      *at.freedom_driven++ = freedom.driven ? 1 : 0;
       put(at.freedom_axis, freedom.axis);
     }
   }
+  for (const Action& action : m.actions) {
+    *at.action_on++ = action.on;
+    *at.action_by++ = action.by;
+  }
   for (const Support& support : m.supports) *at.support_body++ = support.body;
+  for (const Loop& loop : m.loops) {
+    *at.loop_on++ = loop.on;
+    *at.loop_by++ = loop.by;
+    *at.loop_action++ = loop.action;
+    put(at.loop_point_on, loop.point_on);
+    put(at.loop_point_by, loop.point_by);
+  }
   for (const State& state : m.states) {
     put(at.position, state.position);
     put(at.velocity, state.velocity);
     put(at.acceleration, state.acceleration);
     for (const Wrench& load : state.loads) put(at.loads, load);
     for (const Wrench& support : state.supports) put(at.support, support);
-    for (std::size_t i = 0; i < m.actions.size(); ++i)
-      for (int body = 0; body < static_cast<int>(m.bodies.size()); ++body) {
-        const Action& action = m.actions[i];
-        const double sign = action.on == body ? 1 : action.by == body ? -1 : 0;
-        put(at.action, Wrench(sign * state.actions[i]));
-      }
+    for (const Wrench& action : state.actions) put(at.action, action);
   }
 }
 
@@ -168,7 +175,7 @@ std::string how_it_ended(const std::optional<int>& status, const std::string& wo
 }  // namespace
 
 const std::vector<std::string>& known_engines() {
-  static const std::vector<std::string> names = {"mujoco", "dart"};
+  static const std::vector<std::string> names = {"mujoco", "dart", "bullet"};
   return names;
 }
 
@@ -188,19 +195,64 @@ bool is_engine(const std::string& name) {
          !find_file(module_of(name)).empty();
 }
 
-Answer run_engine(const std::string& name, const Mechanism& m, const Progress& progress) {
-  Answer answer;
-  const auto failed = [&](const std::string& why) {
-    answer.failure = name + ": " + why;
-    return answer;
-  };
+namespace {
+
+// A task in shared memory, after an engine has had it; or why it has not.
+struct Done {
+  std::string failure;
+  std::unique_ptr<SharedMemory> memory;
+  Shared* shared = nullptr;
+  Arrays arrays{};
+  double seconds = 0;
+  std::string text() const { return without_control_characters(shared->text); }
+};
+
+// @return why there is no answer, or nothing
+std::string run_in(Done& done, const std::string& name, const Shared& counts, const Mechanism& m,
+                   const Progress& progress) {
   const std::filesystem::path module = find_file(module_of(name));
   if (module.empty())
-    return failed("is not installed: there is no " + module_of(name) +
-                  " beside the program or in BENTAXIS_ENGINE_PATH");
+    return "is not installed: there is no " + module_of(name) +
+           " beside the program or in BENTAXIS_ENGINE_PATH";
   const std::filesystem::path runner = find_file("bentaxis_engine_runner");
-  if (runner.empty())
-    return failed("cannot be run: there is no bentaxis_engine_runner beside the program");
+  if (runner.empty()) return "cannot be run: there is no bentaxis_engine_runner beside the program";
+  done.memory = std::make_unique<SharedMemory>(lay_out(nullptr, counts, done.arrays));
+  const SharedMemory output(1);
+  if (done.memory->get() == nullptr || output.get() == nullptr) return "there is no memory for it";
+  done.shared = new (done.memory->get()) Shared(counts);
+  lay_out(done.shared, counts, done.arrays);
+  write(m, done.arrays);
+  const Stopwatch stopwatch;
+  const std::optional<int> status =
+      run_process(runner.string(), module.string(), done.memory->file(), output.file(), progress);
+  done.seconds = stopwatch.seconds();
+  done.shared->text[sizeof done.shared->text - 1] = 0;
+  switch (done.shared->outcome) {
+    case Outcome::returned:
+      return "";
+    case Outcome::unfinished:
+      return how_it_ended(status, last_words(output.file()));
+    case Outcome::not_loaded:
+    case Outcome::no_function:
+      return module.string() + " is no module of an engine: " + done.text();
+    case Outcome::other_interface:
+      return fmt::format("{} has interface {}, this program {}", module.string(),
+                         done.shared->interface, BENTAXIS_ENGINE_INTERFACE);
+  }
+  return "has given no answer";
+}
+
+Done run_task(const std::string& name, const Shared& counts, const Mechanism& m,
+              const Progress& progress) {
+  Done done;
+  done.failure = run_in(done, name, counts, m, progress);
+  if (!done.failure.empty()) done.failure = name + ": " + done.failure;
+  return done;
+}
+
+// Without a look at the sides of forces.
+Answer run_once(const std::string& name, const Mechanism& m, const Progress& progress,
+                const std::optional<Integrated>& integrated) {
   Shared counts;
   const auto count = [](const auto& list) { return static_cast<std::int32_t>(list.size()); };
   counts.bodies = count(m.bodies);
@@ -208,42 +260,81 @@ Answer run_engine(const std::string& name, const Mechanism& m, const Progress& p
   counts.freedoms = count(m.states.front().position);
   counts.actions = count(m.actions);
   counts.supports = count(m.supports);
+  counts.loops = count(m.loops);
   std::copy_n(m.gravity.data(), 3, counts.gravity);
   counts.length = m.length;
-  Arrays arrays{};
-  const SharedMemory memory(lay_out(nullptr, counts, arrays)), output(1);
-  if (memory.get() == nullptr || output.get() == nullptr)
-    return failed("there is no memory for it");
-  auto* shared = new (memory.get()) Shared(counts);
-  lay_out(shared, counts, arrays);
-  write(m, arrays);
-  const Stopwatch stopwatch;
-  const std::optional<int> status =
-      run_process(runner.string(), module.string(), memory.file(), output.file(), progress);
-  answer.seconds = stopwatch.seconds();
-  shared->text[sizeof shared->text - 1] = 0;
-  const std::string text = without_control_characters(shared->text);
-  switch (shared->outcome) {
-    case Outcome::returned:
-      break;
-    case Outcome::unfinished:
-      return failed(how_it_ended(status, last_words(output.file())));
-    case Outcome::not_loaded:
-    case Outcome::no_function:
-      return failed(module.string() + " is no module of an engine: " + text);
-    case Outcome::other_interface:
-      return failed(fmt::format("{} has interface {}, this program {}", module.string(),
-                                shared->interface, BENTAXIS_ENGINE_INTERFACE));
+  if (integrated) {
+    counts.request = BENTAXIS_ENGINE_INTEGRATED;
+    counts.interval = integrated->interval;
+    counts.first = integrated->first;
+    counts.every = integrated->every;
+    std::snprintf(counts.settings, sizeof counts.settings, "%s", integrated->settings.c_str());
   }
-  const std::size_t size = m.states.size() * (m.actions.size() + m.supports.size());
-  answer.values.assign(arrays.values, arrays.values + size);
-  if (std::isnan(answer.values.front())) return failed(text);
-  if (!std::all_of(answer.values.begin(), answer.values.end(),
-                   [](double value) { return std::isfinite(value); }))
-    return failed("a result is not a number");
-  answer.text = text;
-  answer.residual = *std::max_element(arrays.residual, arrays.residual + m.states.size());
+  const Done done = run_task(name, counts, m, progress);
+  Answer answer;
+  answer.failure = done.failure;
+  answer.seconds = done.seconds;
+  if (!answer.failure.empty()) return answer;
+  answer.text = done.text();
+  answer.turn_seconds = done.shared->seconds;
+  const std::size_t width = m.actions.size() + m.supports.size();
+  const auto row = [&](std::size_t sample) { return done.arrays.values + sample * width; };
+  // A step begins at the last result.
+  const std::size_t end = integrated ? m.states.size() - 2 : m.states.size();
+  for (auto sample = static_cast<std::size_t>(counts.first); sample < end;
+       sample += static_cast<std::size_t>(counts.every)) {
+    answer.values.insert(answer.values.end(), row(sample), row(sample + 1));
+    answer.residual = std::max(answer.residual, done.arrays.residual[sample]);
+  }
+  if (std::isnan(*done.arrays.values))
+    answer.failure = name + ": " + answer.text;
+  else if (!std::all_of(answer.values.begin(), answer.values.end(),
+                        [](double value) { return std::isfinite(value); }))
+    answer.failure = name + ": a result is not a number";
   return answer;
+}
+
+}  // namespace
+
+Answer run_engine(const std::string& name, const Mechanism& mechanism, const Progress& progress,
+                  const std::optional<Integrated>& integrated) {
+  Answer answer = run_once(name, mechanism, progress, integrated);
+  const auto is_two_sided = [](const Action& action) { return action.two_sided; };
+  if (!answer.failure.empty() ||
+      std::none_of(mechanism.actions.begin(), mechanism.actions.end(), is_two_sided))
+    return answer;
+  // The sign of a force does not depend on the side on which it acts.
+  Mechanism sided = mechanism;
+  const std::size_t width = mechanism.actions.size() + mechanism.supports.size();
+  const std::size_t first = integrated ? integrated->first : 0;
+  const std::size_t every = integrated ? integrated->every : 1;
+  for (std::size_t row = 0; row * width < answer.values.size(); ++row) {
+    State& state = sided.states[first + row * every];
+    std::size_t side = 0;
+    for (std::size_t i = 0; i < mechanism.actions.size(); ++i)
+      if (mechanism.actions[i].two_sided) {
+        if (answer.values[row * width + i] < 0) state.actions[i] = state.other_sides[side];
+        ++side;
+      }
+  }
+  return run_once(name, sided, progress, integrated);
+}
+
+std::vector<Setting> settings_of(const std::string& name) {
+  Shared counts;
+  counts.request = BENTAXIS_ENGINE_SETTINGS;
+  const Done done = run_task(name, counts, {}, [](double) {});
+  std::vector<Setting> settings;
+  if (!done.failure.empty()) return settings;
+  std::istringstream words(done.text());
+  for (std::string word; words >> word;) {
+    if (word.find('=') == std::string::npos) continue;
+    std::istringstream values(word.substr(word.find('=') + 1));
+    settings.push_back({word.substr(0, word.find('=')), {}});
+    for (std::string value; std::getline(values, value, ',');)
+      settings.back().values.push_back(value);
+  }
+  return settings;
 }
 
 }  // namespace bentaxis::engines

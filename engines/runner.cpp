@@ -29,17 +29,47 @@ void run(const char* module, Shared& shared) {
   if (engine == nullptr) return failed(Outcome::no_function);
   Arrays at{};
   bentaxis::engines::lay_out(&shared, shared, at);
-  bentaxis_engine_task task{shared.bodies,   shared.freedoms, shared.samples,
-                            shared.actions,  shared.supports, {},
-                            shared.length,   at.parent,       at.place,
-                            at.axes,         at.mass,         at.centre,
-                            at.inertia,      at.freedom_body, at.freedom_turns,
-                            at.freedom_axis, at.position,     at.velocity,
-                            at.acceleration, at.loads,        at.action,
-                            at.support_body, at.support};
+  bentaxis_engine_task task{};
+  task.request = shared.request;
+  task.bodies = shared.bodies;
+  task.freedoms = shared.freedoms;
+  task.samples = shared.samples;
+  task.actions = shared.actions;
+  task.supports = shared.supports;
+  task.loops = shared.loops;
   std::copy_n(shared.gravity, 3, task.gravity);
-  bentaxis_engine_answer answer{at.values, at.residual, ""};
+  task.length = shared.length;
+  task.parent = at.parent;
+  task.place = at.place;
+  task.axes = at.axes;
+  task.mass = at.mass;
+  task.centre = at.centre;
+  task.inertia = at.inertia;
+  task.freedom_body = at.freedom_body;
+  task.freedom_turns = at.freedom_turns;
+  task.freedom_axis = at.freedom_axis;
+  task.position = at.position;
+  task.velocity = at.velocity;
+  task.acceleration = at.acceleration;
+  task.loads = at.loads;
+  task.action_on = at.action_on;
+  task.action_by = at.action_by;
+  task.action = at.action;
+  task.support_body = at.support_body;
+  task.support = at.support;
+  task.interval = shared.interval;
+  task.first = shared.first;
+  task.every = shared.every;
+  task.freedom_driven = at.freedom_driven;
+  task.loop_on = at.loop_on;
+  task.loop_by = at.loop_by;
+  task.loop_action = at.loop_action;
+  task.loop_point_on = at.loop_point_on;
+  task.loop_point_by = at.loop_point_by;
+  task.settings = shared.settings;
+  bentaxis_engine_answer answer{at.values, at.residual, 0, ""};
   shared.interface = engine(BENTAXIS_ENGINE_INTERFACE, &task, &answer);
+  shared.seconds = answer.seconds;
   std::copy_n(answer.text, sizeof answer.text, shared.text);
   shared.text[sizeof shared.text - 1] = 0;
   shared.outcome =

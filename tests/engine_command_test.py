@@ -31,18 +31,18 @@ class EngineTest(ProgramTest):
 
     def test_engines_agree(self):
         modules = pathlib.Path(program.PROGRAM).parents[1] / "modules"
-        missing = [name for name in ("mujoco", "dart") if not (modules / f"bentaxis_engine_{name}.so").exists()]
-        done = self.compare("mujoco,dart", COMPUTATION_FAILED if missing else DONE)
+        missing = [name for name in ("mujoco", "dart", "bullet") if not (modules / f"bentaxis_engine_{name}.so").exists()]
+        done = self.compare("mujoco,dart,bullet", COMPUTATION_FAILED if missing else DONE)
         for name in missing:
             self.assertIn(f"{name}: is not installed", done.err)
-        if len(missing) == 2:
-            self.skipTest("neither MuJoCo nor DART is installed")
+        if len(missing) == 3:
+            self.skipTest("no engine is installed")
         section = self.section(done)
         self.assertIn("All engines agree. ", done.out)
         self.assertIn("curve: bap63_rated, 72 angles", done.out)
         columns = section["table"]["columns"]
-        for name in {"mujoco", "dart"} - set(missing):
-            self.assertRegex(done.out, rf"{name}: \w+ [\d.]+, \w+, tolerance 1e-09")
+        for name in {"mujoco", "dart", "bullet"} - set(missing):
+            self.assertRegex(done.out, rf"{name}: \w+ [\d.]+, .*; given motion, tolerance 1e-09, ")
             for column in (name, f"{name}, curve"):
                 digits = [row[columns.index(column)] for row in section["table"]["rows"]]
                 self.assertEqual([digit for digit in digits if digit and float(digit) < 9], [])
@@ -58,7 +58,7 @@ class EngineTest(ProgramTest):
 
     def test_one_that_fails_ends_nothing_else(self):
         done = self.compare("crashes,old,leaves", COMPUTATION_FAILED)
-        for line in ("crashes: crashed (signal 6, Aborted): about to fail", "has interface 2, this program 1",
+        for line in ("crashes: crashed (signal 6, Aborted): about to fail", "has interface 3, this program 2",
                      "leaves: ended before it had answered (exit status 7)"):
             self.assertIn(line, done.out)
             self.assertIn(line, done.err)
@@ -71,15 +71,49 @@ class EngineTest(ProgramTest):
         self.assertFalse(done.report["verdict"]["agrees"])
         self.assertTrue(done.report["verdict"]["models_agree"])
 
+    def test_time_against_error(self):
+        """Of a module that gives zeros and has no settings: one run for each number of steps."""
+        done = self.compare("gives_zero", OUT_OF_TOLERANCE, "--engine-sweep")
+        self.assertIn("Engines: time against error", done.out)
+        section = next(s for s in done.report["runs"] if s["title"] == "Engines: time against error")
+        rows = [dict(zip(section["table"]["columns"], row)) for row in section["table"]["rows"]]
+        self.assertEqual([row["steps per turn"] for row in rows], [180, 360, 720, 1440, 2880, 5760])
+        for row in rows:
+            self.assertEqual((row["engine"], row["setting"], row["not computed"]), ("gives_zero", "defaults", ""))
+            self.assertAlmostEqual(row["error Rs"], 1, delta=0.1)
+
+    def test_integrated_has_a_tolerance_of_its_own(self):
+        done = self.compare("gives_zero", OUT_OF_TOLERANCE, "--engine-way", "integrated", "--engine-steps", "144")
+        self.assertIn("gives_zero: a faulty engine; integrated, 144 steps per turn, tolerance 0.01", done.out)
+
+    def test_simbody_refuses(self):
+        """A piston just short of the limit of assembly: the engines are compared with the analytic model."""
+        case = program.REPO / "reference_data/hard/assembly_1e-10/case.toml"
+        done = self.run_program("compare", case, "--engine", "gives_zero", "--out", "out", status=OUT_OF_TOLERANCE,
+                                env={**os.environ, "BENTAXIS_ENGINE_PATH": str(MODULES)})
+        report = json.loads((self.folder / "out/report.json").read_text())
+        self.assertIn("Simbody refuses the case", json.dumps(report["warnings"]))
+        self.assertEqual([s["title"] for s in report["runs"]], ["Engines"])
+        self.assertNotIn("multibody", report["runs"][0]["table"]["columns"])
+        self.assertIn("bentaxis: ", done.err)
+        self.assertEqual(sorted(p.name for p in (self.folder / "out").glob("*.csv")), ["analytic.csv", "gives_zero.csv"])
+
     def test_refusals(self):
         case = program.REPO / "cases/bap63_rated.toml"
         for engines in ("bulet", "mujoco,../crashes", "Mujoco"):
             with self.subTest(engines=engines):
-                self.assert_mentions(self.refused("compare", case, "--engine", engines, "--out", "out"), "must be one of mujoco, dart")
+                self.assert_mentions(self.refused("compare", case, "--engine", engines, "--out", "out"), "must be one of mujoco, dart, bullet")
         self.assert_mentions(self.refused("compare", case, "--engine", "mujoco", "--way", "integrated", "--out", "out"),
                              "--engine", "must be left out beside --way integrated")
-        self.assert_mentions(self.refused("compare", program.REPO / "cases/bap63_cardan.toml", "--engine", "mujoco", "--out", "out"),
-                             "--engine", "transfer of kind cardan")
+        for kind, *more in (["tapered_pistons"], ["teeth"], ["cardan", "--engine-way", "integrated"], ["rated", "--engine-way", "integrated",
+                                                                                                   "--set", "operation.speed_rpm=0"]):
+            with self.subTest(kind=kind):
+                self.assert_mentions(self.refused("compare", program.REPO / f"cases/bap63_{kind}.toml", *FEW, "--engine", "mujoco", "--out",
+                                                  "out", *more), "--engine", {"tapered_pistons": "kind pistons", "teeth": "compliant contact",
+                                                                              "cardan": "kind cardan", "rated": "speed_rpm = 0"}[kind])
+        for setting in ("mujoco", "mujoco.a", "dart.solver=PGS", "mujoco.=1"):
+            with self.subTest(setting=setting):
+                self.refused("compare", case, "--engine", "mujoco", "--engine-setting", setting, "--out", "out")
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 #include <mujoco/mujoco.h>
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <cstring>
 #include <memory>
 #include <string>
@@ -129,6 +130,28 @@ TEST(MujocoTraps, ABodyNeedsInertiaAboutEveryAxis) {
       false);
   EXPECT_EQ(refused.model, nullptr);
   EXPECT_NE(refused.error.find("inertia"), std::string::npos) << refused.error;
+}
+
+// The MJCF files of the problem set (docs/problems.md): MuJoCo takes the point of the second body
+// from where the bodies are at the start, so that it says whether the loop is closed there.
+TEST(ProblemsInMjcf, LoopsAreClosedAtTheStart) {
+  const double output_arc = 65 * M_PI / 180;
+  const struct {
+    const char* name;
+    Vector on_second;
+  } models[] = {{"spherical_four_bar", {0, 0.1 * std::sin(output_arc), 0.1 * std::cos(output_arc)}},
+                {"universal_joint", {0, 0.1, 0}},
+                {"piston", {0, 0.035, 0}}};
+  for (const auto& [name, on_second] : models) {
+    const std::string file =
+        std::string(BENTAXIS_SOURCE_DIR "/problems/") + name + "/" + name + ".xml";
+    char why[200] = "";
+    mjModel* model = mj_loadXML(file.c_str(), nullptr, why, sizeof why);
+    ASSERT_NE(model, nullptr) << why;
+    EXPECT_EQ(model->neq, 1) << name;
+    EXPECT_LT((three(model->eq_data + 3) - on_second).norm(), 1e-15) << name;
+    mj_deleteModel(model);
+  }
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <iterator>
@@ -8,9 +10,11 @@
 #include "bentaxis/designs/validation_section.h"
 #include "bentaxis/engines/run.h"
 #include "bentaxis/files/case_file.h"
+#include "bentaxis/files/csv.h"
 #include "bentaxis/study/assumptions.h"
 #include "bentaxis/study/comparison.h"
 #include "bentaxis/study/comparison_document.h"
+#include "bentaxis/study/engine_comparison.h"
 #include "bentaxis/study/timing.h"
 #include "commands.h"
 #include "console.h"
@@ -32,7 +36,7 @@ struct Options {
   int uncertainty = 0;  // samples
   RunChoice choice;
   std::vector<std::string> analytic, multibody;  // KEY=VALUE assumptions
-  std::vector<std::string> engines;
+  study::EngineOptions engines;
 };
 
 // What drives the block is an assumption that the case file says too: it is read as a change of it.
@@ -52,6 +56,33 @@ Case read_with(CaseOption of, const std::string& option,
     of.changes.push_back("transfer.kind=" + kind);
   }
   return of.read();
+}
+
+// @return whether every engine has given results
+bool say_failures(const study::EngineComparison& engines) {
+  const std::vector<std::string> failures = engines.failures();
+  for (const std::string& failure : failures)
+    std::fprintf(stderr, "bentaxis: engine %s\n", failure.c_str());
+  return failures.empty();
+}
+
+// Simbody refuses the case: the analytic model and the engines are all there is.
+int judge_by_engines(const Case& given, const study::EngineOptions& options,
+                     const ComputationError& refusal, ReportFolders& folders) {
+  const study::PreparedCase ready = study::prepare(given, progress_of);
+  const ResultTable analytic = study::run_turn(ready, study::Model::analytic, progress_of);
+  const study::EngineComparison engines = study::compare_engines(
+      ready, options, analytic, nullptr, study::kDrivenTolerance, progress_of);
+  report::Document document =
+      study::engine_document(engines, refusal.what(), versions(),
+                             study::describe(ready.the_case, progress_of), ready.the_case.name);
+  std::vector<TextFile> curves = engine_files(engines);
+  curves.emplace_back("analytic.csv", to_csv(analytic));
+  const auto paths = folders.write("report", document, report::curves_of(analytic), curves);
+  print_result(study::engine_text(engines), paths);
+  std::fprintf(stderr, "bentaxis: %s\n", refusal.what());
+  say_failures(engines);
+  return engines.agrees() ? kComputationFailed : kOutOfTolerance;
 }
 
 int compare(const Options& options) {
@@ -94,13 +125,21 @@ int compare(const Options& options) {
   how.with = options.with;
   how.split_transfer = transfer;
   how.loads = true;
-  how.engines.names = options.engines;
+  study::EngineOptions engines = options.engines;
   if (const auto data = shipped_reference_data()) {
     how.published = *data / "published";
-    how.engines.curves = {*data / "high_precision", *data / "transfers"};
+    engines.curves = {*data / "high_precision", *data / "transfers"};
   }
-  study::ComparisonResult result =
-      study::compare_models(std::move(first), std::move(second), how, progress_of);
+  if (!engines.names.empty())
+    how.engines = std::make_shared<study::EngineOptions>(std::move(engines));
+  std::optional<study::ComparisonResult> compared;
+  try {
+    compared = study::compare_models(std::move(first), std::move(second), how, progress_of);
+  } catch (const ComputationError& refusal) {
+    if (!how.engines || how.way != study::Way::driven) throw;
+    return judge_by_engines(given, *how.engines, refusal, folders);
+  }
+  study::ComparisonResult& result = *compared;
   if (result.with) designs::explain(*result.with, given, progress_of);
 
   const auto refuse = [&](const study::PreparedCase& ready) {
@@ -125,12 +164,9 @@ int compare(const Options& options) {
       folders.write("report", document, study::comparison_curves(result, document), curves);
 
   print_result(study::comparison_text(result) + known, paths);
-  std::vector<std::string> failures;
-  if (result.engines) failures = result.engines->failures();
-  for (const std::string& failure : failures)
-    std::fprintf(stderr, "bentaxis: engine %s\n", failure.c_str());
+  const bool all_ran = !result.engines || say_failures(*result.engines);
   if (!result.passes()) return kOutOfTolerance;
-  return failures.empty() ? kDone : kComputationFailed;
+  return all_ran ? kDone : kComputationFailed;
 }
 
 }  // namespace
@@ -168,12 +204,27 @@ Command add_compare_command(CommandParser program) {
               "one differs by more than its tolerance")
       .text("FOLDER");
   command
-      .option("--engine", options->engines,
-              "run engines of others too, at given motion: exit status 1 where one differs by more "
-              "than its tolerance, 3 where one cannot be run")
+      .option("--engine", options->engines.names,
+              "run engines of others too: exit status 1 where one differs by more than its "
+              "tolerance, 3 where one cannot be run")
       .list()
       .completed_with(engines::known_engines())
       .text("NAME[,NAME..]");
+  command.choice("--engine-way", options->engines.way, {"given", "integrated"},
+                 "given: inverse dynamics at given motion; integrated: by the engine's own "
+                 "integrator and constraints");
+  command
+      .option("--engine-steps", options->engines.steps,
+              "steps per turn of --engine-way integrated; best a multiple of the samples")
+      .integer_in(36, 1'000'000)
+      .text(fmt::format("NUMBER [{}]", study::kEngineSteps));
+  command
+      .option("--engine-setting", options->engines.settings,
+              "a setting of an engine that integrates, mujoco.time_constant=1; docs/engines.md "
+              "lists them")
+      .text("ENGINE.NAME=VALUE ..");
+  command.flag("--engine-sweep", options->engines.sweep,
+               "time against error of the engines, integrated: every step, every setting");
   command
       .option("--uncertainty", options->uncertainty,
               "samples of the parameters in [uncertainty]: bands on the curves, and how well the "

@@ -24,6 +24,15 @@ std::vector<TextFile> comparison_files(const study::ComparisonResult& result) {
     curves.emplace_back("teeth_analytic.csv", to_csv(result.teeth->analytic));
     curves.emplace_back("teeth_multibody.csv", to_csv(result.teeth->multibody));
   }
+  if (result.engines)
+    for (TextFile& file : engine_files(*result.engines)) curves.push_back(std::move(file));
+  return curves;
+}
+
+std::vector<TextFile> engine_files(const study::EngineComparison& engines) {
+  std::vector<TextFile> curves;
+  for (const study::EngineRun& run : engines.runs)
+    if (run.failure.empty()) curves.emplace_back(run.name + ".csv", to_csv(run.table));
   return curves;
 }
 

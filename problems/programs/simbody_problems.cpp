@@ -5,54 +5,18 @@
 // Simbody's forces of constraints have the opposite sign of applied forces; those of mobilizers are
 // on the outer body at its frame M, in the ground's axes, with mobility forces (a drive) included.
 #include <SimTKsimbody.h>
-#include <toml++/toml.h>
 
-#include <cstdio>
-#include <fstream>
-#include <functional>
-#include <iostream>
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "problem_program.h"
+
 namespace {
 
 using namespace SimTK;
-
-// Numbers of [data] in SI, by their keys without unit.
-class Data {
- public:
-  explicit Data(const toml::table& table) {
-    for (const auto& [key, value] : table) {
-      const std::string name(key.str());
-      const auto [stem, factor] = unit_of(name);
-      if (const auto* list = value.as_array()) {
-        for (const auto& one : *list) values_[stem].push_back(factor * number(one));
-      } else if (value.is_number()) {
-        values_[stem] = {factor * number(value)};
-      }
-    }
-  }
-  double operator()(const std::string& name, std::size_t i = 0) const {
-    return values_.at(name).at(i);
-  }
-
- private:
-  static double number(const toml::node& node) { return node.value<double>().value(); }
-  static std::pair<std::string, double> unit_of(const std::string& name) {
-    const std::vector<std::pair<std::string, double>> units = {
-        {"_kg_mm2", 1e-6},  {"_m_per_s2", 1},  {"_N_s_per_m", 1}, {"_Nm_s_per_rad", 1},
-        {"_deg", Pi / 180}, {"_rpm", Pi / 30}, {"_mm", 1e-3},     {"_bar", 1e5},
-        {"_kg", 1},         {"_Nm", 1},        {"_N", 1}};
-    for (const auto& [ending, factor] : units)
-      if (name.size() > ending.size() &&
-          name.compare(name.size() - ending.size(), ending.size(), ending) == 0)
-        return {name.substr(0, name.size() - ending.size()), factor};
-    return {name, 1};
-  }
-  std::map<std::string, std::vector<double>> values_;
-};
+using problems::Data;
+using problems::Rows;
 
 // A mobility that turns with constant speed from 0: its angle is speed x time.
 class Turning : public Motion::Custom::Implementation {
@@ -106,8 +70,6 @@ struct Mechanism {
     throw std::logic_error("the constraint does not act on the body");
   }
 };
-
-using Rows = std::vector<std::vector<double>>;
 
 // About the z axis of both frames, whose x axis is that of `direction` made perpendicular to it.
 Rotation axis_frame(const Vec3& axis, const Vec3& direction) {
@@ -289,35 +251,16 @@ Rows one_sided_wall(const Data& d, const std::vector<double>& grid) {
   return rows;
 }
 
-int run(const std::string& name, const std::string& folder, const std::string& out) {
-  const toml::table file = toml::parse_file(folder + "/problem.toml");
-  const Data data(*file["data"].as_table());
-  std::vector<double> degrees, grid;
-  for (int i = 0; i < file["grid"]["count"].value<int>().value(); ++i) {
-    degrees.push_back(file["grid"]["from"].value<double>().value() +
-                      i * file["grid"]["step"].value<double>().value());
-    grid.push_back(degrees.back() * Pi / 180);
-  }
-  const std::map<std::string, std::function<Rows()>> solvers = {
-      {"pendulum", [&] { return pendulum(data, grid); }},
-      {"spherical_four_bar", [&] { return spherical(data, grid, false); }},
-      {"universal_joint", [&] { return spherical(data, grid, true); }},
-      {"piston", [&] { return piston(data, grid); }},
-      {"one_sided_wall", [&] { return one_sided_wall(data, grid); }}};
-  if (solvers.count(name) == 0) throw std::runtime_error(name + ": is not solved by this program");
-  const Rows rows = solvers.at(name)();
-  std::ofstream stream(out);
-  stream.precision(17);
-  stream << file["grid"]["column"].value<std::string>().value();
-  for (const auto& column : *file["column"].as_array())
-    stream << ',' << (*column.as_table())["name"].value<std::string>().value();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    stream << '\n' << degrees[i];
-    for (const double value : rows[i]) stream << ',' << value;
-  }
-  stream << '\n';
-  return stream.good() ? 0 : 3;
-}
+const std::map<std::string, problems::Solver> kSolvers = {
+    {"pendulum", pendulum},
+    {"spherical_four_bar",
+     [](const Data& data, const std::vector<double>& grid) {
+       return spherical(data, grid, false);
+     }},
+    {"universal_joint",
+     [](const Data& data, const std::vector<double>& grid) { return spherical(data, grid, true); }},
+    {"piston", piston},
+    {"one_sided_wall", one_sided_wall}};
 
 }  // namespace
 
@@ -333,7 +276,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    return run(argv[1], argv[2], argv[3]);
+    return problems::solve(kSolvers, argv[1], argv[2], argv[3]);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "simbody_problems: %s\n", error.what());
     return 3;

@@ -11,6 +11,7 @@
 #include "bentaxis/study/budget_section.h"
 #include "bentaxis/study/calibration.h"
 #include "bentaxis/study/comparison_answers.h"
+#include "bentaxis/study/engine_comparison.h"
 #include "bentaxis/study/force_figures.h"
 #include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/reference_curves.h"
@@ -165,6 +166,39 @@ report::Table engine_table(const EngineComparison& engines) {
   return table;
 }
 
+std::string way_text(const EngineComparison& engines) {
+  return engines.way == EngineWay::given
+             ? "given motion"
+             : fmt::format("integrated, {} steps per turn", engines.steps);
+}
+
+std::string time_text(const EngineComparison& engines, const EngineRun& run) {
+  return engines.way == EngineWay::given ? fmt::format("{:.2g} s", run.seconds)
+                                         : fmt::format("{:.2g} s for a turn", run.turn_seconds);
+}
+
+// Time against error of engines that integrate.
+report::Section effort_section(const EngineComparison& engines) {
+  report::Section section;
+  section.title = "Engines: time against error";
+  section.text = fmt::format(
+      "One turn integrated at constant speed, with default settings and with one setting changed "
+      "at a time. Errors are the largest difference from the analytic model over the peak of a "
+      "reaction, at {} angles. Time is that of the turn, without building the model.",
+      engines.sweep_angles);
+  section.table.columns = {"engine",   "steps per turn", "setting", "time, ms",
+                           "error Rs", "largest error",  "in",      "not computed"};
+  for (const EngineEffort& effort : engines.sweep) {
+    const bool is_there = effort.failure.empty();
+    const auto number = [&](double value) { return is_there ? value : not_computed(); };
+    section.table.rows.push_back({effort.engine, static_cast<double>(effort.steps),
+                                  effort.setting.empty() ? "defaults" : effort.setting,
+                                  number(1000 * effort.seconds), number(effort.joints),
+                                  number(effort.worst), effort.channel, effort.failure});
+  }
+  return section;
+}
+
 report::Section engine_section(const EngineComparison& engines) {
   report::Section section;
   section.title = "Engines";
@@ -180,12 +214,18 @@ report::Section engine_section(const EngineComparison& engines) {
                             " The stored curve is {}, of 50-digit arithmetic, at {} "
                             "angles.",
                             engines.curve, engines.curve_angles);
+  if (engines.way == EngineWay::integrated)
+    section.text += fmt::format(
+        " The engines integrate at constant speed, {} steps per turn, after a fifth of a turn in "
+        "which joints settle; results at {} angles.",
+        engines.steps, engines.angles);
   for (const EngineRun& run : engines.runs)
     section.facts.emplace_back(
         run.name, run.failure.empty()
-                      ? fmt::format("{}; given motion, tolerance {:g}; {:.1e} of all that joints "
-                                    "carry is more than their supports can; {:.2g} s",
-                                    run.text, run.tolerance, run.residual, run.seconds)
+                      ? fmt::format("{}; {}, tolerance {:g}; {:.1e} of all that joints "
+                                    "carry is more than their supports can; {}",
+                                    run.text, way_text(engines), run.tolerance, run.residual,
+                                    time_text(engines, run))
                       : "no results: " + run.failure);
   for (const auto& [channel, reason] : engines.not_given)
     section.facts.emplace_back(channel, "not given: " + reason);
@@ -193,23 +233,19 @@ report::Section engine_section(const EngineComparison& engines) {
   return section;
 }
 
-std::string engine_text(const EngineComparison& engines) {
-  std::string text = engines.headline() + "\n";
-  if (!engines.curve.empty())
-    text += fmt::format("curve: {}, {} angles\n", engines.curve, engines.curve_angles);
-  for (const EngineRun& run : engines.runs)
-    text += run.failure.empty()
-                ? fmt::format("{}: {}, tolerance {:g}\n", run.name, run.text, run.tolerance)
-                : run.failure + "\n";
-  const report::Table table = engine_table(engines);
+// A table for the console; `number` is a format.
+std::string aligned(const report::Table& table, const char* number) {
   std::vector<std::vector<std::string>> lines = {table.columns};
   for (const auto& row : table.rows) {
     lines.emplace_back();
-    for (const report::Cell& cell : row)
-      lines.back().push_back(std::holds_alternative<double>(cell)
-                                 ? fmt::format("{:g}", std::get<double>(cell))
-                                 : std::get<std::string>(cell));
+    for (const report::Cell& cell : row) {
+      const double* value = std::get_if<double>(&cell);
+      lines.back().push_back(value == nullptr      ? std::get<std::string>(cell)
+                             : is_computed(*value) ? fmt::format(fmt::runtime(number), *value)
+                                                   : "");
+    }
   }
+  std::string text;
   for (const auto& line : lines) {
     std::string one;
     for (std::size_t column = 0; column < line.size(); ++column) {
@@ -251,6 +287,35 @@ void add_reference(report::Document& document, const Outcome& outcome) {
 }
 
 }  // namespace
+
+std::string engine_text(const EngineComparison& engines) {
+  std::string text = engines.headline() + "\n";
+  if (!engines.curve.empty())
+    text += fmt::format("curve: {}, {} angles\n", engines.curve, engines.curve_angles);
+  for (const EngineRun& run : engines.runs)
+    text += run.failure.empty()
+                ? fmt::format("{}: {}; {}, tolerance {:g}, {}\n", run.name, run.text,
+                              way_text(engines), run.tolerance, time_text(engines, run))
+                : run.failure + "\n";
+  text += aligned(engine_table(engines), "{:g}");
+  if (!engines.sweep.empty()) {
+    const report::Section section = effort_section(engines);
+    text += "\n" + section.title + "\n" + aligned(section.table, "{:.4g}");
+  }
+  return text;
+}
+
+report::Document engine_document(const EngineComparison& engines, const std::string& refusal,
+                                 const report::Lines& program, const CaseDescription& description,
+                                 const std::string& case_name) {
+  report::Document document = case_document(description, case_name, program);
+  document.verdict = report::Verdict{engines.agrees(), engines.headline()};
+  document.verdict->word = engines.agrees() ? "Engines agree" : "An engine differs";
+  report::append(document.warnings, std::vector<Warning>{{"Simbody refuses the case", refusal}});
+  document.runs.emplace({engine_section(engines)});
+  if (!engines.sweep.empty()) document.runs->push_back(effort_section(engines));
+  return document;
+}
 
 report::Document comparison_document(const ComparisonResult& r, const report::Lines& program,
                                      const CaseDescription& description) {
@@ -302,7 +367,11 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
     append(document.figures, teeth_figures(*r.teeth, the_case.pump));
   }
   document.runs->push_back(rounding_section(r.rounding));
-  if (r.engines) document.runs->insert(document.runs->begin(), engine_section(*r.engines));
+  if (r.engines) {
+    document.runs->insert(document.runs->begin(), engine_section(*r.engines));
+    if (!r.engines->sweep.empty())
+      document.runs->insert(document.runs->begin() + 1, effort_section(*r.engines));
+  }
   if (r.with) add_reference(document, *r.with);
   return document;
 }

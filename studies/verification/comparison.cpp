@@ -12,6 +12,7 @@
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/achieved_error.h"
 #include "bentaxis/study/efficiency.h"
+#include "bentaxis/study/engine_comparison.h"
 #include "bentaxis/study/published_section.h"
 #include "bentaxis/study/rounding_spread.h"
 #include "bentaxis/study/timing.h"
@@ -88,9 +89,9 @@ class Maker {
         analytic::check_validity(r.first.the_case, r.first.the_case.analytic, samples_, r.analytic);
     warn();
     if (!r.options.with.empty()) hold_to_reference();
-    if (!r.options.engines.names.empty())
-      r.engines = compare_engines(r.first, r.options.engines, r.analytic, r.multibody, r.tolerance,
-                                  progress_of_);
+    if (r.options.engines)
+      r.engines = std::make_shared<EngineComparison>(compare_engines(
+          r.first, *r.options.engines, r.analytic, &r.multibody, r.tolerance, progress_of_));
     return std::move(result_);
   }
 
@@ -691,10 +692,11 @@ ComparisonResult compare_models(Case analytic_case, std::optional<Case> multibod
                                 const ComparisonOptions& options, const PartProgress& progress_of) {
   if (!options.with.empty()) reference_in(options.with);  // refused before anything is computed
   if (multibody_case) check_same_run(analytic_case, *multibody_case);
-  check_engines(options.engines.names);
-  if (!options.engines.names.empty() && options.way != Way::driven)
+  if (options.engines) check_engines(*options.engines);
+  if (options.engines && options.way != Way::driven)
     throw InputError(
-        "--engine: must be left out beside --way integrated: engines run at given motion");
+        "--engine: must be left out beside --way integrated: engines are compared with driven "
+        "models; --engine-way integrated integrates them");
   require_memory(analytic_case, Kept::compared, options.way);
   PreparedCase first = prepare(std::move(analytic_case), progress_of);
   // The same case is solved once: both models get the very same curve.

@@ -1,10 +1,12 @@
 #include "bentaxis/study/engine_comparison.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "bentaxis/compare/reference.h"
 #include "bentaxis/engines/mechanism.h"
@@ -20,7 +22,6 @@ namespace {
 
 // Above this share of all that joints carry, the description does not fit the pump.
 constexpr double kMaxResidual = 1e-9;
-constexpr std::size_t kModelCount = 2;
 
 // Whether two cases are the same run, however often they are sampled.
 bool same_run(const Case& a, const Case& b) {
@@ -65,8 +66,20 @@ ResultTable at_angles(const ResultTable& table, const std::vector<double>& angle
   return some;
 }
 
-ResultTable table_of(const std::string& name, const engines::Mechanism& mechanism,
-                     const engines::Answer& answer, const ResultTable& like) {
+// What an engine is given, and where its results belong.
+struct Turn {
+  engines::Mechanism mechanism;
+  engines::Integrated how = {0, 0, 1, ""};
+  std::vector<double> angles;      // of the rows, rising
+  std::vector<std::size_t> order;  // per row its place among the results
+  std::size_t state(std::size_t row) const {
+    return static_cast<std::size_t>(how.first) + order[row] * static_cast<std::size_t>(how.every);
+  }
+};
+
+ResultTable table_of(const std::string& name, const Turn& turn, const engines::Answer& answer,
+                     const ResultTable& like) {
+  const engines::Mechanism& mechanism = turn.mechanism;
   ResultTable table = like;
   table.name = name;
   table.provenance = {{{"method", answer.text}}, answer.seconds};
@@ -76,8 +89,14 @@ ResultTable table_of(const std::string& name, const engines::Mechanism& mechanis
     const std::size_t column = table.find(reading.channel);
     for (std::size_t row = 0; row < table.rows(); ++row) {
       double value = 0;
-      for (const auto& [place, factor] : reading.terms)
-        value += factor * answer.values[row * width + static_cast<std::size_t>(place)];
+      for (const auto& [place, factor] : reading.terms) {
+        const auto index = static_cast<std::size_t>(place);
+        const double share =
+            reading.component
+                ? mechanism.states[turn.state(row)].actions[index].dot(*reading.component)
+                : 1;
+        value += factor * share * answer.values[turn.order[row] * width + index];
+      }
       table.values[row * table.columns() + column] = value / table.channels[column].unit_in_si;
     }
   }
@@ -129,57 +148,217 @@ std::string odd_ones(const EngineRow& row, const std::vector<std::string>& names
 }  // namespace
 
 // Written down before the engines were run: at given motion all solve the same linear equations in
-// double precision.
-double engine_tolerance(const std::string& engine) {
-  static const std::map<std::string, double> tolerances = {{"mujoco", 1e-9}, {"dart", 1e-9}};
+// double precision. Integrated, bench/peers has errors of Rs near 1e-5 (MuJoCo) and 1e-4 (DART) at
+// these steps; small reactions such as Rcs are differences of joint forces forty times as large.
+double engine_tolerance(const std::string& engine, EngineWay way) {
+  struct Tolerances {
+    double given, integrated;
+  };
+  static const std::map<std::string, Tolerances> tolerances = {
+      {"mujoco", {1e-9, 1e-3}}, {"dart", {1e-9, 1e-2}}, {"bullet", {1e-9, 1e-2}}};
   const auto found = tolerances.find(engine);
-  return found == tolerances.end() ? kDrivenTolerance : found->second;
+  const Tolerances own =
+      found == tolerances.end() ? Tolerances{kDrivenTolerance, 1e-2} : found->second;
+  return way == EngineWay::given ? own.given : own.integrated;
 }
 
-void check_engines(const std::vector<std::string>& names) {
-  std::string known;
-  for (const std::string& name : engines::known_engines())
-    known += (known.empty() ? "" : ", ") + name;
-  for (const std::string& name : names)
+const std::vector<int>& engine_sweep_steps() {
+  static const std::vector<int> steps = {180, 360, 720, 1440, 2880, 5760};
+  return steps;
+}
+
+namespace {
+
+// The settings of one engine, of those that are asked for.
+std::string settings_for(const std::string& engine, const std::vector<std::string>& settings) {
+  std::string own;
+  for (const std::string& setting : settings)
+    if (setting.starts_with(engine + "."))
+      own += (own.empty() ? "" : " ") + setting.substr(engine.size() + 1);
+  return own;
+}
+
+}  // namespace
+
+void check_engines(const EngineOptions& options) {
+  const std::string known = fmt::format("{}", fmt::join(engines::known_engines(), ", "));
+  for (const std::string& name : options.names)
     if (!engines::is_engine(name))
       throw InputError("--engine " + name + ": must be one of " + known +
                        ", or have a module in BENTAXIS_ENGINE_PATH");
+  for (const std::string& setting : options.settings) {
+    const std::size_t dot = setting.find('.'), equals = setting.find('=');
+    if (dot == std::string::npos || equals == std::string::npos || equals < dot ||
+        equals + 1 == setting.size() || setting.find(' ') != std::string::npos)
+      throw InputError("--engine-setting " + setting + ": must be ENGINE.NAME=VALUE");
+    const std::string engine = setting.substr(0, dot);
+    if (std::find(options.names.begin(), options.names.end(), engine) == options.names.end())
+      throw InputError("--engine-setting " + setting + ": " + engine + " must be one of --engine");
+    const std::string name = setting.substr(dot + 1, equals - dot - 1);
+    std::string names;
+    for (const engines::Setting& one : engines::settings_of(engine)) {
+      if (one.name == name) names = name;
+      if (names != name) names += (names.empty() ? "" : ", ") + one.name;
+    }
+    // Of an engine that cannot be asked the run says why.
+    if (!names.empty() && names != name)
+      throw InputError("--engine-setting " + setting + ": " + engine + " has " + names);
+  }
 }
 
+namespace {
+
+// An integrated run: a fifth of a turn before lets joints settle.
+Turn turn_of(const PreparedCase& ready, int steps, int results) {
+  Case finer = ready.the_case;
+  finer.operation.samples_per_revolution = 2 * steps;
+  const int settling = steps / 5;
+  // A speed below 0 runs through the angles backwards.
+  const bool falling = finer.operation.speed_rpm < 0;
+  const Samples samples = sample_case(finer, ready.pressure, 3, falling,
+                                      {2 * (steps - settling), 2 * (steps + settling) + 1});
+  Turn turn;
+  turn.mechanism = engines::assemble(finer, finer.analytic, samples);
+  turn.how.interval = 2 * kPi / std::abs(samples.omega) / (2 * steps);
+  turn.how.first = 2 * settling;
+  turn.how.every = 2 * steps / results;
+  for (int i = 0; i < results; ++i) {
+    turn.angles.push_back(360.0 * i / results);
+    turn.order.push_back(static_cast<std::size_t>(falling ? (results - i) % results : i));
+  }
+  return turn;
+}
+
+// Time against error of every engine, one setting changed at a time.
+void sweep_engines(const PreparedCase& ready, const EngineOptions& options,
+                   const ResultTable& analytic, const compare::ZeroScales& scales,
+                   const PartProgress& progress_of, EngineComparison& result) {
+  int results = ready.the_case.operation.samples_per_revolution;
+  for (const int steps : engine_sweep_steps()) results = std::gcd(results, steps);
+  result.sweep_angles = results;
+  struct Variant {
+    std::string engine, setting;
+  };
+  std::vector<Variant> variants;
+  for (const std::string& engine : options.names) {
+    variants.push_back({engine, ""});
+    for (const engines::Setting& setting : engines::settings_of(engine))
+      for (std::size_t i = 1; i < setting.values.size(); ++i)
+        variants.push_back({engine, setting.name + "=" + setting.values[i]});
+  }
+  const Progress progress = progress_of("engines: time against error");
+  const double all = static_cast<double>(variants.size() * engine_sweep_steps().size());
+  double done = 0;
+  for (const int steps : engine_sweep_steps()) {
+    Turn turn = turn_of(ready, steps, results);
+    const ResultTable right = at_angles(
+        select_channels(analytic,
+                        [&](const Channel& channel) {
+                          return std::any_of(
+                              turn.mechanism.readings.begin(), turn.mechanism.readings.end(),
+                              [&](const auto& one) { return one.channel == channel.name; });
+                        }),
+        turn.angles);
+    for (const Variant& variant : variants) {
+      turn.how.settings = settings_for(variant.engine, options.settings);
+      if (!variant.setting.empty()) turn.how.settings += " " + variant.setting;
+      const engines::Answer answer = engines::run_engine(
+          variant.engine, turn.mechanism, [&](double) { progress(done / all); }, turn.how);
+      EngineEffort effort;
+      effort.engine = variant.engine;
+      effort.setting = variant.setting;
+      effort.steps = steps;
+      effort.failure = answer.failure;
+      effort.seconds = answer.turn_seconds;
+      if (answer.failure.empty()) {
+        const ResultTable table = table_of(variant.engine, turn, answer, right);
+        for (const auto& [group, cell] : furthest(right, table, 1, scales)) {
+          if (!cell.difference.known()) continue;
+          const double error = cell.difference.share();
+          if (group == "Rs") effort.joints = error;
+          if (!(error <= effort.worst)) {
+            effort.worst = error;
+            effort.channel = cell.channel;
+          }
+        }
+      }
+      result.sweep.push_back(std::move(effort));
+      ++done;
+    }
+  }
+  progress(1);
+}
+
+}  // namespace
+
 EngineComparison compare_engines(const PreparedCase& ready, const EngineOptions& options,
-                                 const ResultTable& analytic, const ResultTable& multibody,
+                                 const ResultTable& analytic, const ResultTable* multibody,
                                  double model_tolerance, const PartProgress& progress_of) {
-  check_engines(options.names);
+  check_engines(options);
   const Samples samples = ready.samples(Way::driven);
-  engines::Mechanism mechanism =
-      engines::assemble(ready.the_case, ready.the_case.analytic, samples);
-  if (options.change) options.change(mechanism);
+  const compare::ZeroScales scales = zero_scales(ready.the_case, samples);
+  const int per_turn = ready.the_case.operation.samples_per_revolution;
   EngineComparison result;
-  std::vector<const ResultTable*> tables = {&analytic, &multibody};
-  std::vector<double> tolerances(kModelCount, model_tolerance);
-  result.results = {analytic.name, multibody.name};
+  result.way = options.way;
+  const bool integrated = options.way == EngineWay::integrated;
+  if ((integrated || options.sweep) && samples.omega == 0)
+    throw InputError(ready.the_case.file.string() +
+                     ": --engine: speed_rpm = 0: must not be 0 where engines integrate");
+  if ((integrated || options.sweep) && ready.the_case.pump.transfer.kind == TransferKind::cardan)
+    throw InputError(ready.the_case.file.string() +
+                     ": --engine: transfer of kind cardan: has no integration, which holds the "
+                     "block at constant speed; use --engine-way given");
+  Turn turn;
+  if (integrated) {
+    result.steps = options.steps;
+    turn = turn_of(ready, options.steps, std::gcd(options.steps, per_turn));
+  } else {
+    turn.mechanism = engines::assemble(ready.the_case, ready.the_case.analytic, samples);
+    for (std::size_t row = 0; row < samples.theta_deg.size(); ++row) turn.order.push_back(row);
+  }
+  engines::Mechanism& mechanism = turn.mechanism;
+  if (options.change) options.change(mechanism);
   const auto is_given = [&](const Channel& channel) {
     return std::any_of(mechanism.readings.begin(), mechanism.readings.end(),
                        [&](const auto& reading) { return reading.channel == channel.name; });
   };
-  const ResultTable given = select_channels(analytic, is_given);
+  const auto at_results = [&](const ResultTable& table) {
+    const ResultTable some = select_channels(table, is_given);
+    return integrated ? at_angles(some, turn.angles) : some;
+  };
+  const ResultTable given = at_results(analytic);
+  result.angles = static_cast<int>(given.rows());
+  std::vector<const ResultTable*> held = {&given};
+  result.results = {analytic.name};
+  ResultTable other;
+  if (multibody != nullptr) {
+    other = at_results(*multibody);
+    held.push_back(&other);
+    result.results.push_back(other.name);
+  }
+  result.models = held.size();
+  std::vector<double> tolerances(result.models, model_tolerance);
   result.runs.reserve(options.names.size());
   for (const std::string& name : options.names) {
     EngineRun run;
     run.name = name;
-    run.tolerance = engine_tolerance(name);
-    engines::Answer answer = engines::run_engine(name, mechanism, progress_of("engine " + name));
+    run.tolerance = engine_tolerance(name, options.way);
+    turn.how.settings = settings_for(name, options.settings);
+    const engines::Answer answer =
+        engines::run_engine(name, mechanism, progress_of("engine " + name),
+                            integrated ? std::optional(turn.how) : std::nullopt);
     run.failure = answer.failure;
     run.text = answer.text;
     run.residual = answer.residual;
     run.seconds = answer.seconds;
-    if (run.failure.empty() && !(run.residual <= kMaxResidual))
+    run.turn_seconds = answer.turn_seconds;
+    if (run.failure.empty() && !integrated && !(run.residual <= kMaxResidual))
       run.failure = fmt::format("{}: joints carry {:.1e} of their loads outside of their supports",
                                 name, run.residual);
-    if (run.failure.empty()) run.table = table_of(name, mechanism, answer, given);
+    if (run.failure.empty()) run.table = table_of(name, turn, answer, given);
     result.runs.push_back(std::move(run));
     if (!result.runs.back().failure.empty()) continue;
-    tables.push_back(&result.runs.back().table);
+    held.push_back(&result.runs.back().table);
     tolerances.push_back(result.runs.back().tolerance);
     result.results.push_back(name);
   }
@@ -193,9 +372,6 @@ EngineComparison compare_engines(const PreparedCase& ready, const EngineOptions&
       if (reasons.emplace(name, "").second)
         result.not_given.emplace_back(name, engines::why_not_given(channel));
     }
-  const compare::ZeroScales scales = zero_scales(ready.the_case, samples);
-  std::vector<ResultTable> held;
-  for (const ResultTable* table : tables) held.push_back(select_channels(*table, is_given));
   std::optional<ResultTable> curve;
   if (auto stored = stored_curve(options.curves, ready.the_case)) {
     curve = at_angles(stored->second, given.theta_deg);
@@ -215,11 +391,11 @@ EngineComparison compare_engines(const PreparedCase& ready, const EngineOptions&
   }
   for (std::size_t i = 0; i < held.size(); ++i) {
     for (std::size_t j = i + 1; j < held.size(); ++j) {
-      auto cells = furthest(held[i], held[j], std::max(tolerances[i], tolerances[j]), scales);
+      auto cells = furthest(*held[i], *held[j], std::max(tolerances[i], tolerances[j]), scales);
       for (EngineRow& row : result.rows) row.pairs[i][j] = row.pairs[j][i] = cells[row.group];
     }
     if (result.curve.empty()) continue;
-    const ResultTable here = at_angles(held[i], curve->theta_deg);
+    const ResultTable here = at_angles(*held[i], curve->theta_deg);
     auto cells = furthest(*curve, here, tolerances[i], scales);
     for (EngineRow& row : result.rows)
       if (const auto cell = cells.find(row.group);
@@ -227,12 +403,13 @@ EngineComparison compare_engines(const PreparedCase& ready, const EngineOptions&
         row.curve.push_back(cell->second);
   }
   for (EngineRow& row : result.rows) row.odd = odd_ones(row, result.results);
+  if (options.sweep) sweep_engines(ready, options, analytic, scales, progress_of, result);
   return result;
 }
 
 bool EngineComparison::agrees() const {
   return std::none_of(rows.begin(), rows.end(), [&](const EngineRow& row) {
-    for (std::size_t i = kModelCount; i < results.size(); ++i)
+    for (std::size_t i = models; i < results.size(); ++i)
       if (row.pairs[0][i].differs() || (!row.curve.empty() && row.curve[i].differs())) return true;
     return false;
   });
@@ -250,7 +427,7 @@ std::string EngineComparison::headline() const {
   const EngineRow* where = nullptr;
   std::string engine;
   for (const EngineRow& row : rows)
-    for (std::size_t i = kModelCount; i < results.size(); ++i)
+    for (std::size_t i = models; i < results.size(); ++i)
       if (const EngineCell& cell = row.pairs[0][i];
           worst == nullptr ||
           cell.difference.share() / cell.tolerance > worst->difference.share() / worst->tolerance) {

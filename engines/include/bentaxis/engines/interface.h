@@ -5,7 +5,15 @@
 #pragma once
 
 /* Changes whenever a structure below does. */
-#define BENTAXIS_ENGINE_INTERFACE 1
+#define BENTAXIS_ENGINE_INTERFACE 2
+
+/* What is asked for. */
+enum {
+  BENTAXIS_ENGINE_GIVEN_MOTION, /* inverse dynamics at every sample */
+  BENTAXIS_ENGINE_INTEGRATED,   /* the engine integrates from the first sample on, at given loads */
+  BENTAXIS_ENGINE_SETTINGS      /* no values: `text` has the settings that the engine has, as
+                                   "NAME=DEFAULT,OTHER,.. NAME=.."; the others are those of a sweep */
+};
 
 #ifdef __cplusplus
 extern "C" {
@@ -13,7 +21,8 @@ extern "C" {
 
 /* A tree of bodies, its motion and its loads at every sample. */
 struct bentaxis_engine_task {
-  int bodies, freedoms, samples, actions, supports;
+  int request; /* one of the above */
+  int bodies, freedoms, samples, actions, supports, loops;
   double gravity[3]; /* acceleration */
   double length;     /* a typical length of the mechanism, m */
 
@@ -32,18 +41,32 @@ struct bentaxis_engine_task {
   const double* freedom_axis; /* 3: in the frame of the body */
   const double *position, *velocity, *acceleration; /* samples x freedoms */
 
-  const double* loads;  /* known, but for weight: samples x bodies x 6 */
-  const double* action; /* unknown forces, each of size 1: samples x actions x bodies x 6 */
+  const double* loads; /* known, but for weight: samples x bodies x 6 */
+
+  /* Unknown forces, each of size 1: on a body; the opposite acts on another, -1 is the world. */
+  const int *action_on, *action_by;
+  const double* action; /* samples x actions x 6 */
 
   /* What the joint of a body can carry, each of size 1: on the body, by its parent. */
   const int* support_body;
   const double* support; /* samples x supports x 6 */
+
+  /* Integrated only. A step of the engine leads from a sample to the one after the next, so that
+     the loads in its middle are there. */
+  double interval;           /* time between two samples, s */
+  int first, every;          /* samples of which values are wanted: first, first + every, .. */
+  const int* freedom_driven; /* 1: keeps the velocity of the first sample, whatever that takes */
+  /* Loops: a point of one body stays on a point of another. What this takes are three actions. */
+  const int *loop_on, *loop_by, *loop_action;  /* bodies; first of its actions */
+  const double *loop_point_on, *loop_point_by; /* 3: in the frames of the bodies */
+  const char* settings; /* "NAME=VALUE NAME=VALUE": settings of the engine; "": its defaults */
 };
 
 struct bentaxis_engine_answer {
   double* values;   /* samples x (actions + supports): sizes of the unknown forces */
   double* residual; /* samples: what joints carry beyond their supports, over all that they carry */
-  char text[256];   /* engine, version, method; or why there are no values */
+  double seconds;   /* integrated: of the steps from sample `first` on */
+  char text[512];   /* engine, version, method; or why there are no values */
 };
 
 /* @return BENTAXIS_ENGINE_INTERFACE of the library. Where that is not `interface`, nothing else has

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,7 @@ Wrench couple(const Vector& moment);
 struct Freedom {
   bool turns = true;
   Vector axis = Vector::UnitZ();
+  bool driven = false;  ///< where it is integrated: keeps its velocity
 };
 
 /// A body with the joint to its parent. Its origin is the joint's point.
@@ -41,7 +43,15 @@ struct Body {
 /// sample, for size 1, are those of Instant.
 struct Action {
   std::string name;
-  int on = 0, by = -1;  ///< bodies; -1: the world
+  int on = 0, by = -1;     ///< bodies; -1: the world
+  bool two_sided = false;  ///< where its size is negative it is that of State::other_sides
+};
+
+/// A point of one body stays on a point of another.
+struct Loop {
+  int on = 0, by = 0;                                           ///< bodies
+  Vector point_on = Vector::Zero(), point_by = Vector::Zero();  ///< in their frames
+  int action = 0;  ///< the first of three actions, which are its force
 };
 
 /// What the joint of a body carries.
@@ -54,6 +64,8 @@ struct Support {
 struct Reading {
   std::string channel;                        ///< "Rs_1_x2_N"
   std::vector<std::pair<int, double>> terms;  ///< place among actions, then supports; factor
+  /// Instead of the size of an action: this component of its wrench.
+  std::optional<Wrench> component = {};
 };
 
 /// All that changes from sample to sample.
@@ -62,12 +74,14 @@ struct State {
   std::vector<Wrench> loads;                             ///< known, per body; without weight
   std::vector<Wrench> actions;                           ///< of size 1, on the body `on`
   std::vector<Wrench> supports;                          ///< of size 1
+  std::vector<Wrench> other_sides;  ///< of actions with two sides, in their order
 };
 
 struct Mechanism {
   std::vector<Body> bodies;
   std::vector<Action> actions;
   std::vector<Support> supports;
+  std::vector<Loop> loops;
   std::vector<Reading> readings;
   Vector gravity = Vector::Zero();
   double length = 1;  ///< a typical one, m

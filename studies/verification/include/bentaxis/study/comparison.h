@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,13 +17,15 @@
 #include "bentaxis/study/budget.h"
 #include "bentaxis/study/case_description.h"
 #include "bentaxis/study/channel_choice.h"
-#include "bentaxis/study/engine_comparison.h"
 #include "bentaxis/study/lost_digits.h"
 #include "bentaxis/study/regression.h"
 #include "bentaxis/study/run.h"
 #include "bentaxis/study/teeth.h"
 
 namespace bentaxis::study {
+
+struct EngineOptions;     // engine_comparison.h
+struct EngineComparison;  // likewise
 
 /// What counts as agreement where the user names no tolerance and the model is integrated: the
 /// largest difference over the peak. Driven: kDrivenTolerance (achieved_error.h).
@@ -43,8 +46,8 @@ struct ComparisonOptions {
   std::filesystem::path with;  ///< a reference to hold both models to as well; empty: none
   /// The cases differ in what drives the block: split from the difference as an assumption.
   bool split_transfer = false;
-  EngineOptions engines;  ///< of others to run beside the models; none: driven only
-  bool loads = false;     ///< all loads on the bodies too, of a driven run of full pumps
+  std::shared_ptr<const EngineOptions> engines;  ///< to run beside driven models; none: none
+  bool loads = false;  ///< all loads on the bodies too, of a driven run of full pumps
 };
 
 /// Assumptions in words: name and value.
@@ -86,8 +89,8 @@ struct ComparisonResult {
   MultibodyLosses losses;  ///< of a driven run
   std::vector<Warning> warnings;
   std::optional<compare::PublishedTable> published;
-  std::optional<Outcome> with;              ///< both models held to a reference
-  std::optional<EngineComparison> engines;  ///< where any were asked for
+  std::optional<Outcome> with;                      ///< both models held to a reference
+  std::shared_ptr<const EngineComparison> engines;  ///< where any were asked for
 
   bool checks_hold() const;
   /// The verdict: every check holds, no channel lacks a value it should have, and each difference,

@@ -18,12 +18,26 @@ struct Mechanism;
 
 namespace bentaxis::study {
 
-/// Tolerance of an engine at given motion, over the peak of a reaction; of one that is not known
-/// that of Simbody (kDrivenTolerance).
-double engine_tolerance(const std::string& engine);
+/// What an engine does.
+enum class EngineWay {
+  given,       ///< inverse dynamics at given motion
+  integrated,  ///< constant speed: its own integrator and constraints, loads as functions of time
+};
+
+/// Tolerance of an engine, over the peak of a reaction; integrated: with its default settings and
+/// kEngineSteps.
+double engine_tolerance(const std::string& engine, EngineWay way = EngineWay::given);
+
+inline constexpr int kEngineSteps = 1440;  ///< per turn, where nothing else is asked for
 
 struct EngineOptions {
   std::vector<std::string> names;  ///< of engines; empty: none
+  EngineWay way = EngineWay::given;
+  int steps = kEngineSteps;           ///< per turn, integrated
+  std::vector<std::string> settings;  ///< "ENGINE.NAME=VALUE", integrated
+  /// Time against error, integrated: every number of steps of engine_sweep_steps() by every value
+  /// of every setting, one setting changed at a time.
+  bool sweep = false;
   /// Folders of stored curves of 50 digits, of which one may be the case's.
   std::vector<std::filesystem::path> curves;
   /// Changes what engines are given: for negative controls.
@@ -38,8 +52,21 @@ struct EngineRun {
   double tolerance = 0;
   double residual = 0;  ///< share of what joints carry beyond their supports
   double seconds = 0;
+  double turn_seconds = 0;  ///< integrated: of a turn, without building the model
   ResultTable table;
 };
+
+/// One integrated turn of an engine: what it takes and what it gives.
+struct EngineEffort {
+  std::string engine, setting;   ///< "" or the setting that is not at its default
+  std::string failure;           ///< "" where there are results
+  int steps = 0;                 ///< per turn
+  double seconds = 0;            ///< of a turn, without building the model
+  double joints = 0, worst = 0;  ///< largest difference over peak: of Rs; of all channels
+  std::string channel;           ///< the one with the largest difference
+};
+/// Steps per turn of a sweep.
+const std::vector<int>& engine_sweep_steps();
 
 /// How far a result is from another in one group of channels: the channel with the largest
 /// difference over its peak.
@@ -62,10 +89,16 @@ struct EngineRow {
 };
 
 struct EngineComparison {
+  EngineWay way = EngineWay::given;
+  int steps = 0;   ///< per turn, integrated
+  int angles = 0;  ///< at which results are compared
   std::vector<EngineRun> runs;
+  std::vector<EngineEffort> sweep;
+  int sweep_angles = 0;          ///< at which its errors are taken
   std::string curve;             ///< name of the stored curve of this case; "" where there is none
   std::size_t curve_angles = 0;  ///< at which it is compared
   std::vector<std::string> results;  ///< "analytic", "multibody", then engines with results
+  std::size_t models = 0;            ///< of these: both, or the analytic one alone
   std::vector<EngineRow> rows;
   /// Channels that no engine gives, with the reason.
   std::vector<std::pair<std::string, std::string>> not_given;
@@ -78,13 +111,15 @@ struct EngineComparison {
   std::string headline() const;
 };
 
-/// @throws InputError where a name is no engine
-void check_engines(const std::vector<std::string>& names);
+/// @throws InputError where a name is no engine, a setting is not one of its engine's, or the
+///         steps have no common angle with the samples
+void check_engines(const EngineOptions& options);
 
 /// Runs engines at the samples of a driven run of the analytic model.
+/// @param multibody  nothing: that model refuses the case
 /// @throws InputError where the description for engines lacks something of the case
 EngineComparison compare_engines(const PreparedCase& ready, const EngineOptions& options,
-                                 const ResultTable& analytic, const ResultTable& multibody,
+                                 const ResultTable& analytic, const ResultTable* multibody,
                                  double model_tolerance,
                                  const PartProgress& progress_of = silent());
 
