@@ -21,8 +21,8 @@ report::Budget budget_section(const BudgetComparison& budgets, const PreparedCas
 /// One run of a budget: a column of the section.
 struct BudgetTurn {
   const PreparedCase& ready;
-  const ResultTable& budget;  ///< of results/budget.h
-  const ResultTable& table;   ///< all channels of the same run
+  const ResultTable& budget;                 ///< of results/budget.h
+  const ResultTable& table;                  ///< all channels of the same run
   std::optional<hydraulics::PumpPower> oil;  ///< its balance; of the hydraulic model
 };
 
