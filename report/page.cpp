@@ -31,8 +31,8 @@ std::string script() {
       "(() => {\n\"use strict\";\n";
   for (const char* module :
        {"elements.js", "axes.js", "packed.js", "sections.js", "comparison.js", "cursor.js",
-        "curves.js", "bars.js", "drawing.js", "scene_state.js", "scene_shapes.js", "scene_view.js",
-        "scene_tables.js", "scene_panel.js", "hand_out.js", "page.js"})
+        "data.js", "curves.js", "bars.js", "drawing.js", "scene_state.js", "scene_shapes.js",
+        "scene_view.js", "scene_tables.js", "scene_panel.js", "hand_out.js", "page.js"})
     text += "\n" + page_parts().at(module);
   return text + "})();\n";
 }

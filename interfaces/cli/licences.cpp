@@ -44,8 +44,9 @@ std::vector<Part> parts() {
 }
 
 std::string parts_text() {
-  return "bentaxis: Apache-2.0\n\n" + list_of("In the program, its reports and FMUs:", true) +
-         "\n" + list_of("Used from the system:", false) +
+  return "bentaxis: Apache-2.0\n\n" +
+         list_of("In the program, its reports, FMUs and the page of the pump:", true) + "\n" +
+         list_of("Used from the system:", false) +
          "\nbentaxis licenses PART prints the text of a licence.\n";
 }
 

@@ -60,13 +60,8 @@ Statistics statistics(const ResultTable& table, const std::string& column) {
   return statistics(table.rows(), [&](std::size_t row) { return table.at(row, c); });
 }
 
-// One model's turn.
-struct Turn {
-  const PreparedCase& ready;
-  const ResultTable& budget;
-  const ResultTable& table;
-  const std::optional<hydraulics::PumpPower>& oil;  // its balance; of the hydraulic model
-
+// A run with what follows from it.
+struct Turn : BudgetTurn {
   double omega() const { return rad_per_second(ready.the_case.operation.speed_rpm); }
   double power(const std::string& column) const {
     return statistics(budget, column).mean * omega();
@@ -87,8 +82,9 @@ report::Budget::Quantity quantity(const std::vector<Turn>& turns, const std::str
   return q;
 }
 
-std::vector<report::Budget::Torque> torque_lines(const BudgetComparison& budgets,
-                                                 const std::vector<Turn>& turns) {
+// @param comparison  of the budgets; nullptr: they are not compared
+std::vector<report::Budget::Torque> torque_lines(const std::vector<Turn>& turns,
+                                                 const compare::Comparison* comparison) {
   std::vector<report::Budget::Torque> lines;
   const auto add = [&](const std::string& name, const std::string& column,
                        const std::string& carrying) {
@@ -100,7 +96,7 @@ std::vector<report::Budget::Torque> torque_lines(const BudgetComparison& budgets
       line.greatest.push_back(s.greatest);
       line.carrying.push_back(statistics(turn.budget, carrying).mean);
     }
-    if (const auto* compared = budgets.comparison.find(column)) {
+    if (const auto* compared = comparison != nullptr ? comparison->find(column) : nullptr) {
       line.largest_difference = compared->largest;
       line.verdict = compare::to_string(compared->verdict);
     }
@@ -224,25 +220,37 @@ std::vector<report::Budget::Quantity> block_lines(const std::vector<Turn>& turns
   return lines;
 }
 
+report::Budget section_of(const std::vector<Turn>& turns, const compare::Comparison* comparison) {
+  report::Budget section;
+  for (const Turn& turn : turns) section.models.push_back(turn.table.name);
+  section.torque = torque_lines(turns, comparison);
+  section.power = power_lines(turns);
+  section.efficiency = efficiency_quantities(turns);
+  section.block = block_lines(turns);
+  return section;
+}
+
 }  // namespace
 
 report::Budget budget_section(const BudgetComparison& budgets, const PreparedCase& first,
                               const PreparedCase& second, const ResultTable& analytic,
                               const ResultTable& multibody) {
-  const std::vector<Turn> turns = {{first, budgets.analytic, analytic, budgets.analytic_oil},
-                                   {second, budgets.multibody, multibody, budgets.multibody_oil}};
-  report::Budget section;
+  report::Budget section =
+      section_of({{{first, budgets.analytic, analytic, budgets.analytic_oil}},
+                  {{second, budgets.multibody, multibody, budgets.multibody_oil}}},
+                 &budgets.comparison);
   section.text =
       "Each line from its own load alone: analytic by the closed form under that load, multibody "
       "by the load's virtual power along Simbody's velocities. Spring, film and the weights of "
       "shaft and block have no torque. The torque that drives the block is transmitted by the "
       "gear; where the speed of the block is imposed, it is not part of Td.";
-  section.models = {analytic.name, multibody.name};
-  section.torque = torque_lines(budgets, turns);
-  section.power = power_lines(turns);
-  section.efficiency = efficiency_quantities(turns);
-  section.block = block_lines(turns);
   return section;
+}
+
+report::Budget budget_section(const std::vector<BudgetTurn>& turns) {
+  std::vector<Turn> each;
+  for (const BudgetTurn& turn : turns) each.push_back({turn});
+  return section_of(each, nullptr);
 }
 
 std::string budget_text(const BudgetComparison& budgets) {

@@ -30,15 +30,20 @@ function valueAxisTicks(low, high, pixels, options, graph) {
   return valueTicks(low, high, pixels, options, graph).filter(t => t.v >= low && t.v <= high);
 }
 
-// One dygraph. lines: {values, colour, width, dash, silent, right}; bands {low, high, colour, alpha} are filled behind the
-// curves. `right` names the axis of those lines that have one of their own, `ends` fixes that of the others.
-function plot(box, data, lines, bands, yLabel, { right, ends } = {}) {
-  const names = lines.map((_, i) => String(i));
+// What a dygraph draws: rows of an angle and the value of every line there.
+function plotRows(data, lines) {
   const rows = data.order.map(i => [data.theta[i], ...lines.map(l => l.values[i] ?? null)]);
   // Empty rows at the whole turns: the axis then ends at 360 although the last sample does not.
   const nothing = lines.map(() => null);
   if (data.low < rows[0][0]) rows.unshift([data.low, ...nothing]);
   if (data.high > rows[rows.length - 1][0]) rows.push([data.high, ...nothing]);
+  return rows;
+}
+
+// One dygraph. lines: {values, colour, width, dash, silent, right}; bands {low, high, colour, alpha} are filled behind the
+// curves. `right` names the axis of those lines that have one of their own, `ends` fixes that of the others.
+function plot(box, data, lines, bands, yLabel, { right, ends } = {}) {
+  const names = lines.map((_, i) => String(i)), rows = plotRows(data, lines);
   const series = {};
   lines.forEach((l, i) => {
     series[i] = { color: l.colour, strokeWidth: l.width, strokePattern: l.dash || null, pointSize: 2.5,

@@ -5,9 +5,14 @@ let scenePanel = null;  // of the page as it stands
 function pumpInSpace(report, data, scene) {
   if (!scene || !list(scene.bodies).length) return null;
   if (scenePanel) scenePanel.dispose();
-  const own = scene.curves ? prepare(report, scene.curves) : data;
-  const state = sceneState(scene, own), cursor = own.cursor;
-  const order = own.order.length ? own.order : Array.from({ length: scene.rows }, (_, i) => i);
+  let own, state, order;
+  function take(from) {
+    own = scene.curves ? prepare(report, scene.curves) : from;
+    state = sceneState(scene, own);
+    order = own.order.length ? own.order : Array.from({ length: scene.rows }, (_, i) => i);
+  }
+  take(data);
+  const cursor = own.cursor;
   const both = state.models.length > 1;
   let row = order[0], body = null, mode = both ? "both" : "0", view = null, playing = null, tried = false;
   let tagged = null, length = 1;
@@ -89,7 +94,7 @@ function pumpInSpace(report, data, scene) {
   const words = el("p.total", { "aria-live": "polite" }), scaleWords = el("p.hint"), sums = el("div");
   const numbers = el("details", {}, el("summary", {}, "Numbers of the arrows, components in S1"), el("div"));
   const stills = el("div.stills", { "aria-hidden": "true" });
-  const film = filmInset(state);
+  let film = filmInset(state);
   numbers.addEventListener("toggle", () => update());
 
   function largest() {
@@ -195,6 +200,13 @@ function pumpInSpace(report, data, scene) {
   }
 
   // ---- The picture, made when it comes near the screen
+  function showStill() {
+    const still = document.querySelector("#picture svg");
+    frame.classList.add("flat");
+    frame.replaceChildren(el("p.empty", {}, "This browser draws no WebGL here, so the pump is shown as still pictures; "
+      + "slider and tables work all the same."), ...(still ? [el("div.scroll.pump")] : []));
+    if (still) frame.lastElementChild.append(still.cloneNode(true));
+  }
   function open() {
     if (tried) return;
     tried = true;
@@ -204,11 +216,7 @@ function pumpInSpace(report, data, scene) {
       console.warn(error);
     }
     if (!view) {
-      const still = document.querySelector("#picture svg");
-      frame.classList.add("flat");
-      frame.replaceChildren(el("p.empty", {}, "This browser draws no WebGL here, so the pump is shown as still pictures; "
-        + "slider and tables work all the same."), ...(still ? [el("div.scroll.pump")] : []));
-      if (still) frame.lastElementChild.append(still.cloneNode(true));
+      showStill();
       [views.node, cutting.node, names.node, common.node, speed, play, lengths.parentElement].forEach(n => n && (n.hidden = true));
       return;
     }
@@ -288,7 +296,24 @@ function pumpInSpace(report, data, scene) {
       + "click a body for its free-body diagram. Keys: arrows turn, + and \u2212 zoom, comma and full stop step, space plays, Esc shows all."),
     scene.note ? el("p.note", {}, scene.note) : null);
   const panel = {
-    node, dispose() {
+    node,
+    // Draws another pump in the same picture. Not so where it has other bodies or loads: then it is made anew.
+    change(next, from) {
+      const parts = s => JSON.stringify([s.models, s.rows, s.bodies.map(b => b.name), s.loads.map(l => [l.id, l.group]), !!s.film_point]);
+      if (parts(next) !== parts(scene)) return false;
+      scene = next;
+      take(from);
+      for (const g of groups) g.loads = scene.loads.filter(l => !l.counterpart && l.group === g.name);
+      if (film) {
+        const before = film.node;
+        film = filmInset(state);
+        before.replaceWith(film.node);
+      }
+      if (view) view.change(state); else if (tried) showStill();
+      update();
+      return true;
+    },
+    dispose() {
       removeEventListener("beforeprint", print);
       if (playing) cancelAnimationFrame(playing);
       if (view) view.dispose();

@@ -26,17 +26,23 @@ function makeRenderer(canvas) {
 function sceneView(state, canvas, look) {
   const renderer = makeRenderer(canvas);
   if (!renderer) return null;
-  const { scene } = state, frames = list(scene.frames).length ? scene.frames : [{ axes: NOWHERE.axes }];
+  let scene, frames, bodies, thickness, longest, centre;
   const solids = new THREE.Scene(), forces = new THREE.Scene();  // arrows are drawn over the bodies, not inside them
   const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0.01, 10);
   const sun = new THREE.DirectionalLight("#ffffff", 0.62);
   for (const [i, s] of [solids, forces].entries()) s.add(new THREE.AmbientLight("#ffffff", i ? 0.75 : 0.5));
   solids.add(sun, sun.target);
   const planes = [];  // those of the section cut; the materials share this list
-  const bodies = new Map(scene.bodies.map(b => [b.name, bodyObject(b, planes)]));
-  bodies.forEach(b => solids.add(b));
-  const thickness = 0.011 * scene.radius, longest = 0.75 * scene.radius;
-  const centre = scene.centre || [0, 0, 0];
+  function build() {
+    scene = state.scene;
+    frames = list(scene.frames).length ? scene.frames : [{ axes: NOWHERE.axes }];
+    bodies = new Map(scene.bodies.map(b => [b.name, bodyObject(b, planes)]));
+    bodies.forEach(b => solids.add(b));
+    thickness = 0.011 * scene.radius;
+    longest = 0.75 * scene.radius;
+    centre = scene.centre || [0, 0, 0];
+  }
+  build();
   const arrows = new Map();  // by load, model and part
   let clear = [];  // looks that are seen through beside those that always are: the plate, before the block
   let row = 0, drawn = 0, asked = false, gone = false;
@@ -145,6 +151,19 @@ function sceneView(state, canvas, look) {
       setArrow(object, at, none ? [0, 0, 0] : v, longest * Math.max(SHORTEST, share * shown.length), least);
       object.userData.now = { load, v, least, none, newtonsPerMetre: peak / (longest * shown.length) };
     }
+  }
+
+  // Another pump with the same bodies and loads in the same picture: camera, section and what is shown stay.
+  function change(next) {
+    bodies.forEach(body => {
+      solids.remove(body);
+      body.traverse(part => [part.geometry, part.material].forEach(kept => kept && kept.dispose()));
+    });
+    state = next;
+    build();
+    dress();
+    place();
+    invalidate();
   }
 
   // ---- Drawing
@@ -269,5 +288,5 @@ function sceneView(state, canvas, look) {
 
   place();
   setView("free");
-  return { show, setView, orbit, zoom, resize, cut, arrowNear, bodyNear, tips, asDrawn, still, dispose, draw, frames: () => drawn };
+  return { show, change, setView, orbit, zoom, resize, cut, arrowNear, bodyNear, tips, asDrawn, still, dispose, draw, frames: () => drawn };
 }

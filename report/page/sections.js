@@ -122,8 +122,8 @@ function budget({ budget }) {
       ...perModel(", mean", (r, i) => value(r.mean[i], "Nm", peak)),
       { head: "over the turn", num: true, cell: r => value(r.least[0], "", peak) + " to " + value(r.greatest[0], "Nm", peak) },
       { head: "of the mean, to carry the block", num: true, cell: r => value(r.carrying[0], "Nm", peak) },
-      { head: "Largest difference", num: true, cell: r => unit(small(r.max_abs), "Nm") },
-      { head: "Verdict", cell: r => chip(r.verdict) },
+      ...(budget.torque.some(r => r.verdict) ? [{ head: "Largest difference", num: true, cell: r => unit(small(r.max_abs), "Nm") },
+                                                { head: "Verdict", cell: r => chip(r.verdict) }] : []),
     ], budget.torque),
     quantities("Power, mean over the turn", budget.power, largest(budget.power)),
     quantities("Efficiency", budget.efficiency, 0), quantities("Balance of the block on its plate", budget.block, 0));

@@ -9,6 +9,7 @@ import tempfile
 import time
 
 SECONDS = 60  # for any answer
+WEBGL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
 
 def find():
@@ -18,7 +19,8 @@ def find():
 class Browser:
     """with Browser() as browser: browser.open(file, width); browser.evaluate(script)"""
 
-    def __init__(self):
+    def __init__(self, graphics=("--disable-gpu",)):
+        """graphics: options of Chromium for what is drawn; WEBGL: with WebGL, in software."""
         self._profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         to_browser, from_us = os.pipe()
         to_us, from_browser = os.pipe()
@@ -30,7 +32,7 @@ class Browser:
             os.dup2(write, 4)
 
         self._process = subprocess.Popen(
-            [find(), "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
+            [find(), "--headless", "--no-sandbox", *graphics, "--disable-quic", "--no-first-run", "--disable-sync",
              "--disable-background-networking", "--disable-component-update", "--disable-extensions", "--hide-scrollbars",
              f"--user-data-dir={self._profile.name}", "--remote-debugging-pipe", "about:blank"],
             preexec_fn=hand_over, close_fds=False, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
