@@ -17,13 +17,13 @@ namespace {
 class Rows {
  public:
   Rows(Mechanics& mechanics, const Oil& oil, const System& system, const SystemState& start,
-       Trajectory& trajectory, const Options& options)
+       Trajectory& trajectory, bool balances, bool body_loads)
       : mechanics_(mechanics),
         oil_(oil),
         system_(system),
         trajectory_(trajectory),
-        body_loads_(options.body_loads),
-        balances_(options.balances) {
+        body_loads_(body_loads),
+        balances_(balances) {
     kinetic_ = mechanics.kinetic_energy(0, start.motion);
     potential_ = mechanics.elastic_energy(0, start.motion);
     work_of_loads_ = start.motion[kWorkOfLoads];
@@ -120,10 +120,12 @@ Trajectory tabulate(const std::string& name, Mechanics& mechanics, Oil& oil, con
   const Stopwatch watch;
   Trajectory trajectory;
   trajectory.table = trajectory_table(name, mechanics.layout(), drive);
-  HybridIntegrator course(name, mechanics, oil, tolerance, options.balances);
+  // A given motion without oil has no states but its balances.
+  const bool balances = options.balances || System(mechanics, oil, false).scale().empty();
+  HybridIntegrator course(name, mechanics, oil, tolerance, balances);
   course.start(0, start);
   course.foresee(times.back());
-  Rows rows(mechanics, oil, course.system(), start, trajectory, options);
+  Rows rows(mechanics, oil, course.system(), start, trajectory, balances, options.body_loads);
   SystemState at = start;
   std::vector<double> integrals;
   const double end = times.back();

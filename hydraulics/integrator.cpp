@@ -93,13 +93,12 @@ class Period : public numerics::Equations {
       return;
     }
     Integrals rates;
-    rates.add(flows_, network_.seconds_per_degree() / mass_scale_,
-              network_.seconds_per_degree() / work_scale_);
+    rates.add(flows_, network_.seconds_per_degree() / mass_scale_);
     dq[0] = rates.suction;
     dq[1] = rates.delivery;
     dq[2] = rates.leakage;
     dq[3] = rates.load;
-    dq[4] = rates.work;
+    dq[4] = flows_.power * network_.seconds_per_degree() / work_scale_;
   }
 
   Integrals in_units(const double* q) const {
@@ -126,14 +125,14 @@ const char* text_of(numerics::IntegrationFailure::Reason reason) {
 
 }  // namespace
 
-void Integrals::add(const Flows& flows, double seconds_of_mass, double seconds_of_work) {
+void Integrals::add(const Flows& flows, double seconds) {
   for (std::size_t k = 0; k < flows.suction.size(); ++k) {
-    suction += flows.suction[k] * seconds_of_mass;
-    delivery += flows.delivery[k] * seconds_of_mass;
-    leakage += flows.leakage[k] * seconds_of_mass;
+    suction += flows.suction[k] * seconds;
+    delivery += flows.delivery[k] * seconds;
+    leakage += flows.leakage[k] * seconds;
   }
-  load += flows.load * seconds_of_mass;
-  work += flows.power * seconds_of_work;
+  load += flows.load * seconds;
+  work += flows.power * seconds;
 }
 
 void summarize(const Network& network, const Integrals& over_period, Summary& summary) {

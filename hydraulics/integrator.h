@@ -14,8 +14,8 @@ namespace bentaxis::hydraulics {
 struct Integrals {
   double suction = 0, delivery = 0, leakage = 0, load = 0;
   double work = 0;  ///< of the pistons on the oil, gauge pressure
-  /// What flows for some seconds, masses and work each in a unit of its own.
-  void add(const Flows& flows, double seconds_of_mass, double seconds_of_work);
+  /// What flows for some seconds.
+  void add(const Flows& flows, double seconds);
 };
 
 /// Of a summary what integrals over a period say: displacement, density, flows, masses and work.

@@ -101,8 +101,7 @@ class MeansOf {
       : network_(std::move(network)), load_size_(load_size) {}
   void add(const Node& node, const Vector& state) {
     network_->flows(node.x, state.data(), load_size_, flows_);
-    const double seconds = node.width * network_->seconds_per_degree();
-    integrals_.add(flows_, seconds, seconds);
+    integrals_.add(flows_, node.width * network_->seconds_per_degree());
     const PowerBudget power = network_->power(node.x, state.data(), flows_);
     for (int i = 0; i < network_->place_count(); ++i)
       power_[static_cast<Place>(i)] +=

@@ -23,6 +23,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/run.h"
 #include "free_bodies.h"
+#include "stored_cases.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -30,17 +31,6 @@ namespace {
 
 // What is left of all loads on a body, of the sum of their magnitudes.
 constexpr double kSum = 1e-12;
-
-std::vector<std::filesystem::path> stored_cases() {
-  std::vector<std::filesystem::path> files;
-  for (const auto& name : reference_cases())
-    files.push_back(reference_folder() / name / "case.toml");
-  for (const auto& entry :
-       std::filesystem::directory_iterator(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases"))
-    if (entry.path().extension() == ".toml") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
-}
 
 std::string name_of(const BodyLoad& load) {
   return load.symbol + " on " + load.on + " by " + load.by + " at " + load.point;
@@ -144,7 +134,7 @@ TEST(AnalyticLoads, BalanceOnRandomPumps) {
 }
 
 TEST(AnalyticLoads, BalanceInEveryRowOfTheStoredCases) {
-  for (const auto& file : stored_cases()) {
+  for (const auto& file : cases_with_a_turn()) {
     SCOPED_TRACE(file);
     const study::PreparedCase ready = study::prepare(read_case(file));
     const Samples samples = ready.samples(study::Way::driven);
@@ -311,7 +301,7 @@ TEST(MultibodyLoads, BalanceByEitherMethod) {
 }
 
 TEST(MultibodyLoads, BalanceAndAgreeInEveryRowOfTheStoredCases) {
-  for (const auto& file : stored_cases()) {
+  for (const auto& file : cases_with_a_turn()) {
     SCOPED_TRACE(file);
     study::PreparedCase ready = study::prepare(read_case(file));
     const Case& the_case = ready.the_case;

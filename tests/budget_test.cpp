@@ -17,6 +17,7 @@
 #include "bentaxis/study/comparison.h"
 #include "bentaxis/study/comparison_document.h"
 #include "bentaxis/study/run.h"
+#include "stored_cases.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -54,17 +55,6 @@ BothBudgets budgets_of(const study::PreparedCase& ready,
   return both;
 }
 
-std::vector<std::filesystem::path> stored_cases() {
-  const std::filesystem::path source(BENTAXIS_SOURCE_DIR);
-  std::vector<std::filesystem::path> files;
-  for (const auto& name : reference_cases())
-    files.push_back(reference_folder() / name / "case.toml");
-  for (const auto& entry : std::filesystem::directory_iterator(source / "cases"))
-    if (entry.path().extension() == ".toml") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 // Largest magnitude of a column over that of another; of round-off alone where that one is 0.
 double over_peak(const ResultTable& table, const std::string& column, const std::string& of) {
   const double peak = peak_of(table, of);
@@ -72,7 +62,7 @@ double over_peak(const ResultTable& table, const std::string& column, const std:
 }
 
 TEST(Budget, ClosesOnAllStoredCasesInBothModels) {
-  const auto files = stored_cases();
+  const auto files = cases_with_a_turn();
   ASSERT_EQ(files.size(), 28);
   for (const auto& file : files) {
     SCOPED_TRACE(file);
@@ -92,7 +82,7 @@ TEST(Budget, ClosesOnAllStoredCasesInBothModels) {
 // Each line against its own peak, and not against that of the torque: a wrong small line shows.
 // That of the teeth is a difference of torques, held to theirs.
 TEST(Budget, TheModelsAgreeLineByLine) {
-  for (const auto& file : stored_cases()) {
+  for (const auto& file : cases_with_a_turn()) {
     SCOPED_TRACE(file);
     study::PreparedCase ready = study::prepare(read_case(file));
     ready.the_case.multibody = ready.the_case.analytic;

@@ -215,7 +215,7 @@ Command add_compare_command(CommandParser program) {
                  "integrator and constraints");
   command
       .option("--engine-steps", options->engines.steps,
-              "steps per turn of --engine-way integrated; best a multiple of the samples")
+              "steps per turn of engines that integrate; best a multiple of the samples")
       .integer_in(36, 1'000'000)
       .text(fmt::format("NUMBER [{}]", study::kEngineSteps));
   command

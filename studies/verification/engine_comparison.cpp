@@ -188,7 +188,7 @@ void check_engines(const EngineOptions& options) {
                        ", or have a module in BENTAXIS_ENGINE_PATH");
   for (const std::string& setting : options.settings) {
     const std::size_t dot = setting.find('.'), equals = setting.find('=');
-    if (dot == std::string::npos || equals == std::string::npos || equals < dot ||
+    if (dot == std::string::npos || equals == std::string::npos || equals <= dot + 1 ||
         equals + 1 == setting.size() || setting.find(' ') != std::string::npos)
       throw InputError("--engine-setting " + setting + ": must be ENGINE.NAME=VALUE");
     const std::string engine = setting.substr(0, dot);
@@ -196,12 +196,13 @@ void check_engines(const EngineOptions& options) {
       throw InputError("--engine-setting " + setting + ": " + engine + " must be one of --engine");
     const std::string name = setting.substr(dot + 1, equals - dot - 1);
     std::string names;
+    bool there = false;
     for (const engines::Setting& one : engines::settings_of(engine)) {
-      if (one.name == name) names = name;
-      if (names != name) names += (names.empty() ? "" : ", ") + one.name;
+      there = there || one.name == name;
+      names += (names.empty() ? "" : ", ") + one.name;
     }
     // Of an engine that cannot be asked the run says why.
-    if (!names.empty() && names != name)
+    if (!names.empty() && !there)
       throw InputError("--engine-setting " + setting + ": " + engine + " has " + names);
   }
 }
