@@ -144,7 +144,9 @@ async function dropKept() {
 
 // ---- In step: curves at every answer, words and the pump in space whenever there is time
 
-let busy = false, again = false, opening = false, waiters = [], updates = 0, documents = 0, lastDocument = 0;
+// While a control moves, words and the pump in space follow four times a second.
+const WORDS_EVERY = 250, AT_REST = 120;  // ms
+let busy = false, again = false, opening = false, waiters = [], updates = 0, documents = 0, lastDocument = 0, lastChange = 0;
 let shown = null, keptTurn = null;  // the last turns: {angles, columns}
 
 // Columns as lists, null where nothing was computed.
@@ -166,6 +168,7 @@ async function tableOf({ angles, values, rows, columns }, which) {
 function update() {
   const settled = new Promise(done => waiters.push(done));
   again = true;
+  lastChange = performance.now();
   if (!busy && !opening) keepInStep();
   return settled;
 }
@@ -185,7 +188,9 @@ async function keepInStep() {
       shown = await tableOf(found, 0);
       drawCurves();
       ++updates;
-      if (again && performance.now() - lastDocument < 150) continue;
+      const soon = () => performance.now() - lastDocument < WORDS_EVERY;
+      while (!again && soon() && performance.now() - lastChange < AT_REST) await new Promise(done => setTimeout(done));
+      if (again && soon()) continue;
       const said = await ask("document");
       lastDocument = performance.now();
       if (said.error) refuse(said); else drawDocument(said);
