@@ -170,7 +170,7 @@ class DartIntegration : public Integration {
       for (int i = 0; i < task_.freedoms; ++i)
         begin->position[i] = bodies_.joints[i]->getPosition(0);
       for (int loop = 0; loop < task_.loops; ++loop)
-        axes.push_back(link(loop)->getTransform().linear());
+        axes.emplace_back(link(loop)->getTransform().linear());
     }
     world_->step(false);
     if (begin == nullptr) return;

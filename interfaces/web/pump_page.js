@@ -82,7 +82,7 @@ function noTrouble() {
 
 // A refused value is marked where it is set. The words of --set are those of a command line.
 function refuse({ error, kind }) {
-  const text = error.replace(/^--set ([^:]*): /, "$1: ").replaceAll("/work/", "");
+  const text = error.replace(/^--set ([^:]*): /, "$1: ").replaceAll("/case/", "");
   trouble(kind === "program" ? "died" : kind, text);
   document.querySelectorAll(".parameter.wrong").forEach(p => p.classList.remove("wrong"));
   const name = /\[([\w.]+)\] (\w+)/.exec(error) || /^--set ([\w.]+)\.(\w+)/.exec(error);

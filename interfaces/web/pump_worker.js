@@ -1,6 +1,6 @@
 // Runs the models beside the page: messages {id, call, ..} in, {id, ..} out. Stands behind the module that Emscripten makes.
 
-const WORK = "/work";  // the folder of the case and of the files that it names
+const WORK = "/case";  // the folder of the case and of the files that it names
 
 function pumpCalls(module) {
   const text = (name, ...given) => module.ccall(name, "string", given.map(v => (typeof v === "number" ? "number" : "string")), given);
