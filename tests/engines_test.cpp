@@ -342,12 +342,13 @@ TEST(Mechanisms, MotionOfATreeIsTheDerivativeOfItsPositions) {
           {0.2 * i + (1 + i) * t - 0.2 * i * t * t, 1 + i - 0.4 * i * t, -0.4 * i});
     return engines::moved(engines::moved({}, base, &turn), body, coordinates.data());
   };
-  constexpr double h = 1e-4;  // error of central differences: about h^2, 1e-8 of values near 10
-  const auto before = at(-h), now = at(0), after = at(h);
-  const engines::Vector velocity = (after.point(point) - before.point(point)) / (2 * h);
+  constexpr double kStep =
+      1e-4;  // error of central differences: about its square, 1e-8 of values near 10
+  const auto before = at(-kStep), now = at(0), after = at(kStep);
+  const engines::Vector velocity = (after.point(point) - before.point(point)) / (2 * kStep);
   const engines::Vector acceleration =
-      (after.velocity_of(point) - before.velocity_of(point)) / (2 * h);
-  const engines::Vector turning_rate = (after.turning - before.turning) / (2 * h);
+      (after.velocity_of(point) - before.velocity_of(point)) / (2 * kStep);
+  const engines::Vector turning_rate = (after.turning - before.turning) / (2 * kStep);
   EXPECT_LT((velocity - now.velocity_of(point)).norm(), 1e-5);
   EXPECT_LT((acceleration - now.acceleration_of(point)).norm(), 1e-5);
   EXPECT_LT((turning_rate - now.turning_rate).norm(), 1e-5);
