@@ -19,8 +19,17 @@ namespace {
 using Arenas = ObjectPool<oneapi::tbb::task_arena>;
 
 // Orders what threads hand to each other once more than oneTBB does, whose library a thread
-// sanitizer does not see.
-std::atomic<long> handed_over{0};
+// sanitizer does not see: where the scope begins and where it is left, by an exception too.
+class HandOver {
+ public:
+  HandOver() { count.fetch_add(1); }
+  ~HandOver() { count.fetch_add(1); }
+  HandOver(const HandOver&) = delete;
+  HandOver& operator=(const HandOver&) = delete;
+
+ private:
+  static inline std::atomic<long> count{0};
+};
 
 // Arenas of a width that nobody works in. oneTBB 2021.8 keeps 7 kB of every one that there ever
 // was.
@@ -37,7 +46,7 @@ void parallel_for(int threads, std::size_t count, const std::function<void(std::
   if (count == 0) return;
   // Those that this process may use: mpirun and batch systems hand them out.
   const int processors = std::max(1, oneapi::tbb::info::default_concurrency());
-  handed_over.fetch_add(1);
+  const HandOver to_workers_and_back;
   const int width = threads > 0 ? std::min(threads, processors) : processors;
   Arenas& arenas = arenas_of(width);
   auto arena = arenas.take([&] { return oneapi::tbb::task_arena(width); });
@@ -45,14 +54,12 @@ void parallel_for(int threads, std::size_t count, const std::function<void(std::
     oneapi::tbb::parallel_for(
         oneapi::tbb::blocked_range<std::size_t>(0, count, 1),
         [&](const auto& range) {
-          handed_over.fetch_add(1);
+          const HandOver from_caller_and_back;
           for (std::size_t i = range.begin(); i < range.end(); ++i) job(i);
-          handed_over.fetch_add(1);
         },
         oneapi::tbb::simple_partitioner());
   });
   arenas.give_back(std::move(arena));  // one that an exception left is not used again
-  handed_over.fetch_add(1);
 }
 
 }  // namespace bentaxis::numerics
