@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -47,6 +48,8 @@ TEST(ParallelFor, AnExceptionReachesTheCallerAndTheNextCallWorks) {
   for (int i = 0; i < 3; ++i)
     EXPECT_THROW(parallel_for(2, 20,
                               [](std::size_t job) {
+                                // Time for every thread to take a job.
+                                std::this_thread::sleep_for(std::chrono::milliseconds(1));
                                 if (job == 7) throw std::runtime_error("job 7");
                               }),
                  std::runtime_error);
