@@ -27,7 +27,7 @@ def script():
 
 
 class Archives(unittest.TestCase):
-    """With an installation that has a library for Windows."""
+    """With an installation that has libraries for Windows and ARM."""
 
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp())
@@ -42,6 +42,9 @@ class Archives(unittest.TestCase):
         self.library.parent.mkdir(parents=True)
         self.library.write_bytes(b"MZ library")
         (self.library.parent / "licences.txt").write_bytes(b"text of mingw-w64")
+        arm = self.folder / "lib/bentaxis/fmu/aarch64-linux/bentaxis_pump.so"
+        arm.parent.mkdir()
+        arm.write_bytes(b"ELF GLIBC_2.17")
 
     def write(self, *arguments, program=None):
         return subprocess.run([str(program or self.program), "fmu", str(REPO / "cases/bap63_rated.toml"), "--out",
@@ -54,13 +57,17 @@ class Archives(unittest.TestCase):
             return {name: archive.read(name) for name in archive.namelist() if name.startswith("binaries/")}, done.stdout
 
     def test_all_installed_platforms_are_packed(self):
-        for version, folders in ((2, ("linux64", "win64")), (3, ("x86_64-linux", "x86_64-windows"))):
+        linux = r"co-simulation, Linux on x86-64 with glibc \S+ or newer"
+        for version, places, words in (
+                (2, ("linux64/bentaxis_pump.so", "win64/bentaxis_pump.dll"), " and Windows on x86-64\n"),
+                (3, ("x86_64-linux/bentaxis_pump.so", "x86_64-windows/bentaxis_pump.dll", "aarch64-linux/bentaxis_pump.so"),
+                 ", Windows on x86-64 and Linux on 64-bit ARM with glibc 2.17 or newer\n")):
             found, said = self.binaries("--fmi", version)
-            self.assertEqual(list(found), [f"binaries/{folders[0]}/bentaxis_pump.so", f"binaries/{folders[1]}/bentaxis_pump.dll"])
-            self.assertEqual(found[f"binaries/{folders[1]}/bentaxis_pump.dll"], b"MZ library")
-            self.assertRegex(said, r"co-simulation, Linux on x86-64 with glibc \S+ or newer and Windows on x86-64\n")
+            self.assertEqual(list(found), [f"binaries/{place}" for place in places])
+            self.assertEqual(list(found.values())[1:], [b"MZ library", b"ELF GLIBC_2.17"][:len(places) - 1])
+            self.assertRegex(said, linux + words)
         with zipfile.ZipFile(self.folder / "pump.fmu") as archive:
-            self.assertIn("or newer and Windows on x86-64.", archive.read("documentation/index.html").decode())
+            self.assertIn("Windows on x86-64 and Linux on 64-bit ARM with", archive.read("documentation/index.html").decode())
             self.assertIn(b"text of mingw-w64", archive.read("documentation/licenses/third_party.txt"))
 
     def test_platforms_chooses(self):
@@ -78,7 +85,8 @@ class Archives(unittest.TestCase):
 
     def test_what_cannot_be_is_refused(self):
         refusals = [(("--platforms", "x86_64-linux,x86_64-linux"), "--platforms x86_64-linux: is specified more than once"),
-                    (("--platforms", "x86_64-darwin"), "x86_64-windows")]
+                    (("--platforms", "x86_64-darwin"), "aarch64-linux"),
+                    (("--fmi", "2", "--platforms", "aarch64-linux"), "--platforms aarch64-linux: FMI 2.0 has no folder for it")]
         if not (PROGRAM.parents[1] / "modules/fmu").exists():
             self.library.unlink()
             refusals.append((("--platforms", "x86_64-windows"), "--platforms x86_64-windows: its library is not installed; "

@@ -78,8 +78,9 @@ int make_unit(Options& options) {
   const fs::path place = checked_place(options.out);
   const Case the_case = options.the_case.read();
   options.unit.version = options.version == "3" ? fmu::Version::fmi3 : fmu::Version::fmi2;
-  options.unit.platforms =
-      options.platforms.empty() ? fmu::installed_platforms() : options.platforms;
+  options.unit.platforms = options.platforms.empty()
+                               ? fmu::installed_platforms(options.unit.version)
+                               : options.platforms;
   options.unit.drive = drive_of(options.drive, the_case);
   OutputFolder folder(place.has_parent_path() ? place.parent_path() : fs::path("."));
   folder.add(place.filename().string(), fmu::unit_archive(the_case, options.unit));
@@ -112,7 +113,7 @@ Command add_fmu_command(CommandParser program) {
   command
       .choices("--platforms", options->platforms, fmu::platform_names(),
                "whose libraries are in the FMU")
-      .text("x86_64-linux,x86_64-windows [all that are installed]");
+      .text("x86_64-linux,x86_64-windows,aarch64-linux [all that are installed]");
   command
       .option(
           "--accuracy", options->unit.tolerance,

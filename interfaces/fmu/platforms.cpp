@@ -19,14 +19,15 @@ namespace fs = std::filesystem;
 
 struct Facts {
   const char* name;      // as FMI 3 names it, and its folder there
-  const char* folder_2;  // FMI 2's
+  const char* folder_2;  // FMI 2's; none where it knows no such platform
   const char* ending;
   const char* words;
 };
 // In the order of Platform.
-constexpr std::array<Facts, 2> kFacts = {
+constexpr std::array<Facts, 3> kFacts = {
     {{"x86_64-linux", "linux64", ".so", "Linux on x86-64"},
-     {"x86_64-windows", "win64", ".dll", "Windows on x86-64"}}};
+     {"x86_64-windows", "win64", ".dll", "Windows on x86-64"},
+     {"aarch64-linux", nullptr, ".so", "Linux on 64-bit ARM"}}};
 
 constexpr InputKind kLibrary = {"the library of an FMU", 64 * kMebibyte};
 
@@ -44,6 +45,10 @@ fs::path folder_of(Platform platform) {
     if (fs::is_regular_file(folder / library_name(platform), none)) return folder;
   }
   return {};
+}
+
+bool is_known(Version version, Platform platform) {
+  return version == Version::fmi3 || facts_of(platform).folder_2 != nullptr;
 }
 
 bool is_there(Platform platform) {
@@ -90,10 +95,12 @@ std::vector<std::string> platform_names() {
   return names;
 }
 
-std::vector<Platform> installed_platforms() {
+std::vector<Platform> installed_platforms(Version version) {
   std::vector<Platform> platforms;
-  for (std::size_t i = 0; i < kFacts.size(); ++i)
-    if (is_there(static_cast<Platform>(i))) platforms.push_back(static_cast<Platform>(i));
+  for (std::size_t i = 0; i < kFacts.size(); ++i) {
+    const auto platform = static_cast<Platform>(i);
+    if (is_known(version, platform) && is_there(platform)) platforms.push_back(platform);
+  }
   return platforms;
 }
 
@@ -104,6 +111,8 @@ std::vector<PlatformLibrary> platform_libraries(Version version,
     const std::string given = std::string("--platforms ") + facts_of(*it).name;
     if (std::find(platforms.begin(), it, *it) != it)
       throw InputError(given + ": is specified more than once");
+    if (!is_known(version, *it))
+      throw InputError(given + ": FMI 2.0 has no folder for it; --fmi 3 has");
     if (!is_there(*it))
       throw InputError(given +
                        ": its library is not installed; scripts/build_fmu_platforms builds it");

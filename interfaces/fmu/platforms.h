@@ -16,7 +16,8 @@ struct PlatformLibrary {
   std::string needs;     ///< in words: "Linux on x86-64 with glibc 2.35 or newer"
 };
 
-/// @throws InputError where a platform is given more than once or is not installed
+/// @throws InputError where a platform is given more than once, is not installed, or is none of the
+/// version's
 std::vector<PlatformLibrary> platform_libraries(Version version,
                                                 const std::vector<Platform>& platforms);
 

@@ -10,8 +10,13 @@
 
 #include <cerrno>
 
-#define BENTAXIS_OLDEST "GLIBC_2.2.5"  // of x86-64
+#ifdef __x86_64__
+#define BENTAXIS_OLDEST "GLIBC_2.2.5"
 constexpr int kStatVersion = 1;
+#else
+#define BENTAXIS_OLDEST "GLIBC_2.17"  // of 64-bit ARM
+constexpr int kStatVersion = 0;
+#endif
 
 // NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming): names of the linker
 extern "C" {

@@ -19,11 +19,12 @@ enum class Drive {
 };
 
 /// Of a library in the archive.
-enum class Platform { x86_64_linux, x86_64_windows };
+enum class Platform { x86_64_linux, x86_64_windows, aarch64_linux };
 /// By their names in FMI 3, in the order of Platform.
 std::vector<std::string> platform_names();
-/// Those with an installed library (scripts/build_fmu_platforms); x86_64_linux is always there.
-std::vector<Platform> installed_platforms();
+/// Those that the version of FMI knows and that have an installed library
+/// (scripts/build_fmu_platforms); x86_64_linux is always there.
+std::vector<Platform> installed_platforms(Version version);
 
 struct UnitOptions {
   Version version = Version::fmi2;
