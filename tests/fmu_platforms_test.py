@@ -113,6 +113,13 @@ class Script(unittest.TestCase):
         self.assertGreater(worst, script().LIMIT)
         self.assertEqual(script().largest_difference(names, rows, rows), (0.0, "-"))
 
+    def test_what_vanishes_is_compared_with_the_largest_of_its_unit(self):
+        names = ["Rs_x1_N", "Rcs_z4_N", "Td_Nm"]
+        rows, others = [[1e4, 5e-14, 100.0]], [[1e4, -5e-14, 100.0]]
+        self.assertLess(script().largest_difference(names, rows, others)[0], 1e-16)
+        self.assertAlmostEqual(script().largest_difference(names, [[1e4, 2e-8, 100.0]], [[1e4, 4e-8, 100.0]])[0], 1)
+        self.assertEqual(script().largest_difference(names, rows, [[1e4, 5e-14 + 1.0, 100.0]]), (1e-4, "Rcs_z4_N"))
+
     def test_a_value_that_one_platform_alone_has_is_a_difference(self):
         worst, where = script().largest_difference(["x"], [[1.0]], [[float("nan")]])
         self.assertEqual((worst, where), (float("inf"), "x"))
