@@ -644,6 +644,8 @@ std::vector<fs::path> find_references(const fs::path& root) {
     std::sort(entries.begin(), entries.end());
     for (const auto& entry : entries) {
       if (entry.filename() == "README.md" || entry.filename() == "generator") continue;
+      // A proposal of `bentaxis reference new`, which stands beside the reference that it is for.
+      if (entry.filename().string().ends_with("_mapping.toml")) continue;
       if (!fs::is_directory(entry))
         throw InputError(entry.string() + ": is not used: " + folder.string() + " has no " +
                          kDescriptionName);

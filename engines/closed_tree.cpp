@@ -20,7 +20,8 @@ Settings::Settings(const std::string& known, const std::string& given) {
   std::istringstream all(known), changes(given);
   for (std::string word; all >> word;) {
     const std::size_t equals = word.find('=');
-    values_[word.substr(0, equals)] = word.substr(equals + 1, word.find(',', equals) - equals - 1);
+    values_[word.substr(0, equals)] =
+        word.substr(equals + 1, word.find_first_of(",;", equals) - equals - 1);
   }
   for (std::string word; changes >> word;) {
     const std::string name = word.substr(0, word.find('='));

@@ -48,7 +48,8 @@ class Integration {
 /// The settings of a run: those given, else the defaults.
 class Settings {
  public:
-  /// @param known  "NAME=DEFAULT,OTHER,.. NAME=.."
+  /// @param known  "NAME=DEFAULT,OTHER,.. NAME=DEFAULT,OTHER,..;LEAST..MOST", a word or a number; a
+  ///               number with "..MOST;integer" is a whole one
   /// @param given  "NAME=VALUE NAME=VALUE"
   /// @throws std::runtime_error where a name is not known
   Settings(const std::string& known, const std::string& given);

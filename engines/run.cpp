@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -19,6 +20,7 @@
 
 #include "bentaxis/files/module_folders.h"
 #include "bentaxis/pump/characters.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/results/stopwatch.h"
 #include "shared_task.h"
 
@@ -329,12 +331,37 @@ std::vector<Setting> settings_of(const std::string& name) {
   std::istringstream words(done.text());
   for (std::string word; words >> word;) {
     if (word.find('=') == std::string::npos) continue;
-    std::istringstream values(word.substr(word.find('=') + 1));
-    settings.push_back({word.substr(0, word.find('=')), {}});
-    for (std::string value; std::getline(values, value, ',');)
-      settings.back().values.push_back(value);
+    Setting setting;
+    setting.name = word.substr(0, word.find('='));
+    std::istringstream parts(word.substr(word.find('=') + 1));
+    std::string part;
+    std::getline(parts, part, ';');
+    std::istringstream values(part);
+    for (std::string value; std::getline(values, value, ',');) setting.values.push_back(value);
+    while (std::getline(parts, part, ';'))
+      if (const auto dots = part.find(".."); dots != std::string::npos) {
+        setting.least = part.substr(0, dots);
+        setting.most = part.substr(dots + 2);
+      } else {
+        setting.is_integer |= part == "integer";
+      }
+    settings.push_back(std::move(setting));
   }
   return settings;
+}
+
+std::string Setting::refusal(const std::string& value) const {
+  const std::optional<double> lowest = number_in(least), highest = number_in(most);
+  if (!lowest || !highest) {
+    const bool is_word = !values.empty() && !number_in(values.front());
+    if (!is_word || std::find(values.begin(), values.end(), value) != values.end()) return "";
+    return fmt::format("one of {}", fmt::join(values, ", "));
+  }
+  const std::optional<double> number = number_in(value);
+  if (number && *number >= *lowest && *number <= *highest &&
+      (!is_integer || std::floor(*number) == *number))
+    return "";
+  return fmt::format("{} in [{}, {}]", is_integer ? "an integer" : "a number", least, most);
 }
 
 }  // namespace bentaxis::engines

@@ -17,6 +17,8 @@ std::string text_table(const compare::Comparison& comparison) {
   std::map<std::string, const compare::ChannelComparison*> worst;
   for (const compare::ChannelComparison& c : comparison.channels) {
     if (!c.judged) continue;
+    // What this pump does not have is no gap where neither model gives it.
+    if (!c.channel.of_pump && !c.compared() && c.gap.empty()) continue;
     auto& entry = worst[c.channel.group];
     if (entry == nullptr || rank(&c) > rank(entry)) entry = &c;
   }

@@ -19,6 +19,7 @@ namespace {
 
 using namespace compare;
 using testing::HasSubstr;
+using testing::Not;
 
 Channel channel(const std::string& name, const std::string& group, const std::string& unit = "N",
                 ChannelKind kind = ChannelKind::reaction) {
@@ -652,6 +653,10 @@ TEST(Text, OrderOfTheGroups) {
   EXPECT_THAT(row("C_N"), HasSubstr("agrees"));
   EXPECT_THAT(row("C_N"), HasSubstr(" 2.00e+00 "));
   EXPECT_THAT(row("A_N"), HasSubstr("not computed by both"));
+  // A quantity that the pump does not have is no gap.
+  for (auto& c : comparison.channels) c.channel.of_pump = c.channel.name != "A_N";
+  EXPECT_THAT(report::text_table(comparison), Not(HasSubstr("A_N")));
+  EXPECT_THAT(report::text_table(comparison), HasSubstr("B_N"));
 }
 
 TEST(Curves, DifferencesAreTakenBeforeRounding) {

@@ -68,6 +68,8 @@ class EngineTest(ProgramTest):
     def test_one_that_differs_is_out_of_tolerance(self):
         done = self.compare("gives_zero,crashes", OUT_OF_TOLERANCE)
         self.assertIn("Wrong by the stored curve: gives_zero.", done.out)
+        self.assertTrue(done.out.splitlines()[1].startswith("Engines differ: "), done.out)
+        self.assertTrue(done.report["verdict"]["headline"].startswith("Engines differ: "))
         self.assertFalse(done.report["verdict"]["agrees"])
         self.assertTrue(done.report["verdict"]["models_agree"])
 
@@ -113,7 +115,22 @@ class EngineTest(ProgramTest):
                                                                               "cardan": "kind cardan", "rated": "speed_rpm = 0"}[kind])
         for setting in ("mujoco", "mujoco.a", "dart.solver=PGS", "mujoco.=1"):
             with self.subTest(setting=setting):
-                self.refused("compare", case, "--engine", "mujoco", "--engine-setting", setting, "--out", "out")
+                self.refused("compare", case, "--engine", "mujoco", "--engine-way", "integrated", "--engine-setting", setting, "--out", "out")
+        for setting, allowed in (("solver=FOO", "one of Newton, CG, PGS"), ("impedance=2", "a number in [0.0001, 0.9999]"),
+                                 ("time_constant=-1", "a number in [0.01, 1000]"), ("iterations=1.5", "an integer in [1, 100000]")):
+            with self.subTest(setting=setting):
+                self.assert_mentions(self.refused("compare", case, "--engine", "mujoco", "--engine-way", "integrated", "--engine-setting",
+                                                  f"mujoco.{setting}", "--out", "out"), f"mujoco.{setting}: must be {allowed}")
+        self.assert_mentions(self.refused("compare", case, "--engine", "mujoco,mujoco", "--out", "out"), "mujoco: is specified more than once")
+
+    def test_options_without_effect_are_refused(self):
+        case = program.REPO / "cases/bap63_rated.toml"
+        for options in (["--engine-steps", "360"], ["--engine-way", "integrated"], ["--engine-sweep"], ["--engine-setting", "mujoco.solver=PGS"]):
+            with self.subTest(options=options):
+                self.assert_mentions(self.refused("compare", case, *options, "--out", "out"), options[0], "must have --engine NAME beside it")
+        for options in (["--engine-steps", "720"], ["--engine-setting", "mujoco.solver=PGS"]):
+            with self.subTest(options=options):
+                self.assert_mentions(self.refused("compare", case, "--engine", "mujoco", *options, "--out", "out"), options[0], "--engine-way integrated")
 
 
 if __name__ == "__main__":

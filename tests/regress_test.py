@@ -221,6 +221,11 @@ class NegativeControlTest(RegressTest):
         (self.folder / "all" / "stray.csv").write_text("x\n")
         self.assert_mentions(self.refused("regress", "all"), "stray.csv", "is not used")
 
+    def test_a_proposal_of_reference_new_may_stand_beside_the_reference(self):
+        self.copy_of("high_precision/bap63_rated", "all/high_precision/bap63_rated")
+        (self.folder / "all" / "rig_mapping.toml").write_text("x\n")
+        self.regress("all", status=DONE)
+
     def test_unused_column(self):
         def change(header, rows):
             header[header.index("Td_z1_Nm")] = "Td"

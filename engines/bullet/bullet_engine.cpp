@@ -283,8 +283,8 @@ std::unique_ptr<Tree> make_tree(const bentaxis_engine_task& task) {
 }
 
 std::string known_settings() {
-  return "solver=Dantzig,impulses error_reduction=1,0.5,0.2 force_mixing=0,1e-9,1e-6 "
-         "iterations=50,10,200";
+  return "solver=Dantzig,impulses error_reduction=1,0.5,0.2;0..1 force_mixing=0,1e-9,1e-6;0..1 "
+         "iterations=50,10,200;1..100000;integer";
 }
 
 std::unique_ptr<Integration> make_integration(const bentaxis_engine_task& task,

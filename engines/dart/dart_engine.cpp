@@ -213,8 +213,8 @@ std::unique_ptr<Tree> make_tree(const bentaxis_engine_task& task) {
 }
 
 std::string known_settings() {
-  return "error_reduction=1,0.5,0.2,0.01 force_mixing=1e-9,1e-5,1e-3 largest_correction=1000,0.1 "
-         "solver=Dantzig,PGS";
+  return "error_reduction=1,0.5,0.2,0.01;0..1 force_mixing=1e-9,1e-5,1e-3;1e-9..1 "
+         "largest_correction=1000,0.1;0..1e9 solver=Dantzig,PGS";
 }
 
 std::unique_ptr<Integration> make_integration(const bentaxis_engine_task& task,

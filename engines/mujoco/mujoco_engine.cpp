@@ -237,8 +237,9 @@ std::unique_ptr<Tree> make_tree(const bentaxis_engine_task& task) {
 
 // Time constant of `solref` in steps, impedance of `solimp`.
 std::string known_settings() {
-  return "integrator=RK4,Euler,implicit time_constant=2,1,3,5 impedance=0.9999,0.999,0.99,0.9 "
-         "solver=Newton,CG,PGS iterations=2,1,20";
+  return "integrator=RK4,Euler,implicit time_constant=2,1,3,5;0.01..1000 "
+         "impedance=0.9999,0.999,0.99,0.9;0.0001..0.9999 "  // others MuJoCo replaces by these
+         "solver=Newton,CG,PGS iterations=2,1,20;1..100000;integer";
 }
 
 std::unique_ptr<Integration> make_integration(const bentaxis_engine_task& task,

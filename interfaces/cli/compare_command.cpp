@@ -37,7 +37,28 @@ struct Options {
   RunChoice choice;
   std::vector<std::string> analytic, multibody;  // KEY=VALUE assumptions
   study::EngineOptions engines;
+  int engine_steps = 0;  // 0: not given
 };
+
+// An option that changes nothing is a mistake: it would look as if an engine had run.
+void refuse_engine_options_without_effect(const Options& options) {
+  const bool integrated = options.engines.way == study::EngineWay::integrated;
+  const std::pair<bool, const char*> given[] = {
+      {integrated, "--engine-way integrated"},
+      {options.engine_steps != 0, "--engine-steps"},
+      {!options.engines.settings.empty(), "--engine-setting"},
+      {options.engines.sweep, "--engine-sweep"}};
+  if (options.engines.names.empty()) {
+    for (const auto& [is_given, option] : given)
+      if (is_given) throw InputError(std::string(option) + ": must have --engine NAME beside it");
+  } else if (!integrated) {
+    if (options.engine_steps != 0)
+      throw InputError("--engine-steps: must have --engine-way integrated beside it");
+    if (!options.engines.settings.empty() && !options.engines.sweep)
+      throw InputError(
+          "--engine-setting: must have --engine-way integrated or --engine-sweep beside it");
+  }
+}
 
 // What drives the block is an assumption that the case file says too: it is read as a change of it.
 constexpr char kTransfer[] = "transfer=";
@@ -87,6 +108,7 @@ int judge_by_engines(const Case& given, const study::EngineOptions& options,
 
 int compare(const Options& options) {
   options.choice.refuse_without_effect(true);
+  refuse_engine_options_without_effect(options);
   const auto names_transfer = [](const std::vector<std::string>& assumptions) {
     return std::any_of(assumptions.begin(), assumptions.end(), is_transfer);
   };
@@ -126,6 +148,7 @@ int compare(const Options& options) {
   how.split_transfer = transfer;
   how.loads = true;
   study::EngineOptions engines = options.engines;
+  if (options.engine_steps != 0) engines.steps = options.engine_steps;
   if (const auto data = shipped_reference_data()) {
     how.published = *data / "published";
     engines.curves = {*data / "high_precision", *data / "transfers"};
@@ -214,7 +237,7 @@ Command add_compare_command(CommandParser program) {
                  "given: inverse dynamics at given motion; integrated: by the engine's own "
                  "integrator and constraints");
   command
-      .option("--engine-steps", options->engines.steps,
+      .option("--engine-steps", options->engine_steps,
               "steps per turn of engines that integrate; best a multiple of the samples")
       .integer_in(36, 1'000'000)
       .text(fmt::format("NUMBER [{}]", study::kEngineSteps));

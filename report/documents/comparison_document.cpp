@@ -41,7 +41,7 @@ report::Verdict verdict_of(const ComparisonResult& r) {
   if (r.engines && r.agrees() && !r.engines->agrees()) {
     verdict.models_agree = true;
     verdict.word = "An engine differs";
-    verdict.headline += " " + r.engines->headline();
+    verdict.headline = r.engines->headline() + " " + verdict.headline;
   }
   if (const auto cause = r.cause())
     verdict.cause = {cause->text, cause->round_off, cause->over_scale};
@@ -290,6 +290,10 @@ void add_reference(report::Document& document, const Outcome& outcome) {
 
 std::string engine_text(const EngineComparison& engines) {
   std::string text = engines.headline() + "\n";
+  text += fmt::format(
+      "digits of agreement with the analytic model{}, relative to the peak of a reaction; ! marks "
+      "a difference above the tolerance\n",
+      engines.curve.empty() ? "" : " and, in the columns named curve, with the stored curve");
   if (!engines.curve.empty())
     text += fmt::format("curve: {}, {} angles\n", engines.curve, engines.curve_angles);
   for (const EngineRun& run : engines.runs)
@@ -408,8 +412,9 @@ report::Curves comparison_curves(const ComparisonResult& r, const report::Docume
 }
 
 std::string comparison_text(const ComparisonResult& r) {
+  const report::Verdict verdict = verdict_of(r);
   std::string text =
-      report::answers_text(r.first.the_case.name, r.headline(), comparison_answers(r)) +
+      report::answers_text(r.first.the_case.name, verdict.headline, verdict.answers) +
       report::text_table(r.comparison);
   if (!r.choice.empty()) text += fmt::format("chosen {}\n", r.choice);
   if (r.budget) text += budget_text(*r.budget) + "\n";

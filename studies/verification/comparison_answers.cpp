@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bentaxis/study/engine_comparison.h"
 #include "bentaxis/study/lost_digits.h"
 #include "bentaxis/study/timing.h"
 #include "bentaxis/study/transfer_summary.h"
@@ -75,6 +76,8 @@ std::string lost_digits_text(const std::vector<RoundingLine>& lines) {
 std::vector<std::string> comparison_answers(const ComparisonResult& r) {
   std::vector<std::string> sentences;
   if (r.with) add_outcome(sentences, *r.with);
+  // Where an engine differs the headline says so.
+  if (r.engines && r.engines->agrees()) sentences.push_back(r.engines->headline());
   if (r.split)
     for (std::size_t a = 0; a < r.split->assumptions.size(); ++a)
       if (std::string text = contribution_text(*r.split, a); !text.empty())

@@ -182,6 +182,9 @@ std::string settings_for(const std::string& engine, const std::vector<std::strin
 
 void check_engines(const EngineOptions& options) {
   const std::string known = fmt::format("{}", fmt::join(engines::known_engines(), ", "));
+  for (auto it = options.names.begin(); it != options.names.end(); ++it)
+    if (std::find(options.names.begin(), it, *it) != it)
+      throw InputError("--engine " + *it + ": is specified more than once");
   for (const std::string& name : options.names)
     if (!engines::is_engine(name))
       throw InputError("--engine " + name + ": must be one of " + known +
@@ -198,8 +201,11 @@ void check_engines(const EngineOptions& options) {
     std::string names;
     bool there = false;
     for (const engines::Setting& one : engines::settings_of(engine)) {
-      there = there || one.name == name;
       names += (names.empty() ? "" : ", ") + one.name;
+      if (one.name != name) continue;
+      there = true;
+      if (const std::string allowed = one.refusal(setting.substr(equals + 1)); !allowed.empty())
+        throw InputError("--engine-setting " + setting + ": must be " + allowed);
     }
     // Of an engine that cannot be asked the run says why.
     if (!names.empty() && !there)

@@ -39,6 +39,11 @@ struct Answer {
 struct Setting {
   std::string name;
   std::vector<std::string> values;  ///< the default, then those of a sweep
+  std::string least, most;          ///< of a number; "": not told
+  bool is_integer = false;
+
+  /// @return what a value must be where it is not allowed: "a number in [0, 1]"; else ""
+  std::string refusal(const std::string& value) const;
 };
 
 /// Whether an engine of this name is known, or there is a module of it.
