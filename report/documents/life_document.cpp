@@ -153,9 +153,9 @@ std::vector<std::string> answers_of(const LifeStudy& s) {
   }
   for (const study::LifeLimit& l : life.limits)
     if (l.violated_share > 0)
-      answers.push_back(fmt::format(
-          "Not valid over {:.3g} % of the revolutions, where this does not hold: {}.",
-          100 * l.violated_share, limit_name(l)));
+      answers.push_back(
+          fmt::format("Not valid over {:.3g} % of the revolutions, where this does not hold: {}.",
+                      100 * l.violated_share, limit_name(l)));
   return answers;
 }
 
