@@ -242,6 +242,27 @@ class Gaps(unittest.TestCase):
         done, result = score(header, rows[:180], "pendulum")
         self.assertEqual((done.returncode, result["verdict"], result["angles_covered"]), (1, "incomplete", 180))
         self.assertEqual(result["gaps"], ["rows at 180 of 360 angles; none between 179 and 360 (theta_deg)"])
+        _, result = score(header, rows[180:], "pendulum")
+        self.assertEqual(result["gaps"], ["rows at 180 of 360 angles; none between -1 and 180 (theta_deg)"])
+
+    def test_the_verdict_is_said_first(self):
+        header, rows = curves("pendulum")
+        score(header, rows[:180], "pendulum")
+        text = run("score", FOLDER / "table.csv", "--problem", "pendulum").stdout
+        self.assertTrue(text.splitlines()[1].startswith("incomplete: 5 of 5 columns"), text)
+
+    def test_angles_that_come_twice_are_told(self):
+        header, rows = curves("pendulum")
+        _, result = score(header, rows + [[rows[3][0], *(1.1 * x for x in rows[3][1:])]], "pendulum")
+        self.assertEqual(result["verdict"], "wrong")
+        self.assertEqual(result["gaps"], ["1 rows are at angles of rows before them; all of them are compared"])
+
+    def test_a_heading_without_underscores_is_recognised_as_one(self):
+        header, rows = curves("gear_pair")
+        mean = [name for name in header if name.startswith("input_bearing")][:1] or header[-1:]
+        plain = mean[0].rsplit("_", 1)[0].replace("_", "")
+        _, result = score([plain if name == mean[0] else name for name in header], rows, "gear_pair")
+        self.assertIn(f"column {plain} is not asked for; is it {mean[0]}?", result["gaps"])
 
     def test_missing_and_further_columns(self):
         header, rows = curves("pendulum")

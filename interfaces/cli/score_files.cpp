@@ -19,8 +19,8 @@ const char* word(Verdict verdict) {
   return verdict == Verdict::solved ? "solved" : verdict == Verdict::wrong ? "wrong" : "incomplete";
 }
 
-// Digits are not rounded up.
-double tenths(double digits) { return std::floor(digits * 10) / 10; }
+// Digits are not rounded up, and 0 has no sign.
+double tenths(double digits) { return std::floor(digits * 10) / 10 + 0.0; }
 
 // Decades between the spread that 2 ulp of the inputs make and the tolerance.
 double margin(const study::ProblemColumn& column, double tolerance) {
@@ -58,9 +58,14 @@ std::string verdict_text(const study::Problem& problem, const study::Score& scor
 std::string score_text(const study::Problem& problem, const study::Score& score) {
   std::size_t width = 6;
   for (const auto& column : problem.columns) width = std::max(width, column.name.size());
-  std::string text = fmt::format("{}: {}\n\n{:<{}}  {:>6}  {:>10}  {:>10}  {:>9}  {:>9}  {}\n",
-                                 problem.name, problem.title, "column", width, "digits",
-                                 "difference", "at", "tolerance", "2 ulp", "result");
+  std::string text =
+      fmt::format("{}: {}\n{}\n", problem.name, problem.title, verdict_text(problem, score));
+  for (const auto& mistake : score.mistakes)
+    text += "mistake: " + mistake_text(problem, mistake) + "\n";
+  if (!score.unexplained.empty())
+    text += "no known mistake: " + names(problem, score.unexplained) + "\n";
+  text += fmt::format("\n{:<{}}  {:>6}  {:>10}  {:>10}  {:>9}  {:>9}  {}\n", "column", width,
+                      "digits", "difference", "at", "tolerance", "2 ulp", "result");
   for (const auto& one : score.columns) {
     const auto& column = problem.columns[one.column];
     if (one.rows == 0) {
@@ -77,12 +82,8 @@ std::string score_text(const study::Problem& problem, const study::Score& score)
       "the "
       "peak; at: {}\n",
       problem.over);
-  for (const auto& mistake : score.mistakes)
-    text += "mistake: " + mistake_text(problem, mistake) + "\n";
-  if (!score.unexplained.empty())
-    text += "no known mistake: " + names(problem, score.unexplained) + "\n";
   for (const std::string& gap : score.gaps) text += "gap: " + gap + "\n";
-  return text + "\n" + verdict_text(problem, score) + "\n";
+  return text;
 }
 
 std::string score_json(const study::Problem& problem, const study::Score& score,

@@ -232,7 +232,7 @@ class Scorer {
                                    table_.file.string(), problem_.over));
     if (!angle->note.empty()) result_.gaps.push_back(angle->note);
     std::set<std::size_t> covered;
-    std::size_t outside = 0;
+    std::size_t outside = 0, repeated = 0;
     for (std::size_t r = 0; r < table_.rows.size(); ++r) {
       const double x = table_.rows[r][angle->column] * angle->factor;
       const auto place = is_computed(x) ? grid_.place(x) : std::nullopt;
@@ -240,7 +240,7 @@ class Scorer {
         ++outside;
         continue;
       }
-      if (place->row) covered.insert(*place->row);
+      if (place->row && !covered.insert(*place->row).second) ++repeated;
       if (place->row || problem_.smooth)
         rows_.push_back({*place, r});
       else
@@ -253,6 +253,9 @@ class Scorer {
           "{}: no row is at a value of {} that {} asks for ({} to {}, step {})",
           table_.file.string(), problem_.over, problem_.name, number_text(problem_.grid.front()),
           number_text(problem_.grid.back()), number_text(grid_.step())));
+    if (repeated > 0)
+      result_.gaps.push_back(fmt::format(
+          "{} rows are at angles of rows before them; all of them are compared", repeated));
     if (outside > 0)
       result_.gaps.push_back(fmt::format(
           "{} rows are left out: their {} is not within the problem's", outside, problem_.over));
@@ -280,7 +283,11 @@ class Scorer {
       holes.emplace_back(problem_.grid.front(), xs.front());
     for (std::size_t i = 0; i < xs.size(); ++i) {
       const double next = i + 1 < xs.size() ? xs[i + 1] : end;
-      if (next - xs[i] > wide) holes.emplace_back(xs[i], next);
+      // The one across the end of a turn is told where it begins within the turn.
+      const bool is_next_turn =
+          problem_.period > 0 && xs[i] + grid_.step() >= problem_.grid.front() + problem_.period;
+      const double back = is_next_turn ? problem_.period : 0;
+      if (next - xs[i] > wide) holes.emplace_back(xs[i] - back, next - back);
     }
     complete_ = holes.empty();
     if (complete_) return;
@@ -341,6 +348,26 @@ class Scorer {
     result_.columns.push_back(one);
   }
 
+  // The one column that a heading is like, or begins as without its underscores.
+  static std::optional<std::string> column_meant(const std::string& heading,
+                                                 const std::set<std::string>& wanted) {
+    const auto plain = [](const std::string& text) {
+      std::string kept;
+      for (const char c : text)
+        if (c != '_') kept += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      return kept;
+    };
+    const std::string begin = plain(heading);
+    std::optional<std::string> found;
+    int count = 0;
+    for (const std::string& name : wanted)
+      if (begin.size() >= 3 && plain(name).starts_with(begin)) {
+        found = name;
+        ++count;
+      }
+    return count == 1 ? found : meant(heading, wanted, 0.7);
+  }
+
   void say_gaps() {
     std::string missing;
     std::set<std::string> wanted;
@@ -355,7 +382,7 @@ class Scorer {
     std::string others;
     const std::vector<std::string> unused = matcher_.unused();
     for (std::size_t i = 0; i < unused.size(); ++i) {
-      const auto near = meant(unused[i], wanted, 0.7);
+      const auto near = column_meant(unused[i], wanted);
       if (near)
         result_.gaps.push_back(
             fmt::format("column {} is not asked for; is it {}?", unused[i], *near));
