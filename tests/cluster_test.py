@@ -302,12 +302,14 @@ class ClusterTest(unittest.TestCase):
 
     def test_a_lost_part_is_named_and_submitted_again(self):
         job = self.parts("1-5")
+        never = self.merge(job)
         wait_for("task 3 has blocks", lambda: any(number % 5 == 2 for number in self.blocks()))
         self.cluster.said("scancel", "--signal=KILL", "--full", f"{job}_3")
         wait_for("the array ends", lambda: all(t["JobState"] in ("COMPLETED", "FAILED", "CANCELLED") for t in self.cluster.job(job)))
         states = {task["ArrayTaskId"]: task["JobState"] for task in self.cluster.job(job)}
         self.assertNotEqual(states.pop("3"), "COMPLETED")
         self.assertEqual(set(states.values()), {"COMPLETED"})
+        wait_for("the merge that depends on all parts never starts", lambda: self.cluster.job(never)[0]["Reason"] == "DependencyNeverSatisfied")
         merge = self.sbatch("--nodes=1", "--wrap", "bentaxis merge sweep_out")
         self.ends(merge, "FAILED")
         self.assertRegex(self.output(merge), "sweep.parts: .*missing or damaged: .*[0-9]")
