@@ -11,8 +11,8 @@ std::optional<fs::path> shipped_folder(const std::string& name, const fs::path& 
   if (const fs::path folder = file.parent_path() / data_from_file / name;
       fs::is_directory(folder, error))
     return folder.lexically_normal();
-  // In a build, not installed: that of the sources. The path is in a file, so that what is built from
-  // the same sources in two places is equal.
+  // In a build, not installed: that of the sources. The path is in a file, so that what is built
+  // from the same sources in two places is equal.
   std::string sources;
   std::ifstream beside(file.parent_path() / BENTAXIS_SOURCES_FILE);
   if (std::getline(beside, sources))
