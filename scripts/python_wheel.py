@@ -168,7 +168,7 @@ def source_files():
     if (ROOT / ".git").exists():
         names = subprocess.run(["git", "-C", ROOT, "ls-files", "-z"], capture_output=True, check=True, text=True).stdout
         return sorted(name for name in names.split("\0") if name and (ROOT / name).is_file())
-    made = re.compile(r"(build[^/]*|out|site)/|(.*/)?__pycache__/|PKG-INFO$")
+    made = re.compile(r"(build[^/]*|out|site|release)/|(.*/)?__pycache__/|PKG-INFO$")
     names = (str(path.relative_to(ROOT)) for path in ROOT.rglob("*") if path.is_file())
     return sorted(name for name in names if not made.match(name))
 

@@ -395,7 +395,7 @@ class Archives(unittest.TestCase):
 
     def test_tokens_differ_where_units_do(self):
         tokens = set()
-        variants = [[], ["--accuracy", "1e-7"], ["--drive", "torque"], ["--set", "pump.tilt_deg=39"]]
+        variants = [[], ["--accuracy", "1e-7"], ["--drive", "torque"], ["--set", "pump.tilt_deg=39"], ["--output-units", "si"]]
         for i, more in enumerate(variants):
             file = self.folder / f"variant{i}.fmu"
             self.assertEqual(run("fmu", REPO / "cases/bap63_rated.toml", "--out", file, *more).returncode, 0)
@@ -404,6 +404,36 @@ class Archives(unittest.TestCase):
         self.assertEqual(len(tokens), len(variants))
         for token in tokens:
             self.assertRegex(token, r"^\{[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}\}$")
+
+    def test_outputs_in_units_of_the_si(self):
+        # Exponents of kg, m, s, rad; of SI units the factor is 1.
+        si = {"N": (1, 1, -2, 0), "N.m": (1, 2, -2, 0), "W": (1, 2, -3, 0), "m": (0, 1, 0, 0), "Pa": (1, -1, -2, 0), "rad": (0, 0, 0, 1),
+              "rad/s": (0, 0, -1, 1), "rad/s2": (0, 0, -2, 1), "m3/s": (0, 3, -1, 0)}
+        case = REPO / "cases/bap63_rated_hydraulic.toml"
+        for version in (2, 3):
+            made = {}
+            for name, more in (("none", []), ("columns", ["--output-units", "columns"]), ("si", ["--output-units", "si"])):
+                made[name] = self.folder / f"units_{name}_{version}.fmu"
+                self.assertEqual(run("fmu", case, "--out", made[name], "--fmi", version, *LINUX, *more).returncode, 0)
+            self.assertEqual(made["none"].read_bytes(), made["columns"].read_bytes())
+            units = {}
+            for name in ("none", "si"):
+                with zipfile.ZipFile(made[name]) as archive:
+                    it = Description(archive.read("modelDescription.xml"))
+                    self.assertEqual("outputs si" in archive.read("resources/unit.txt").decode().splitlines(), name == "si")
+                units[name] = {v.all.get("unit") or self.unit_of_type(it, v) for v in it.variables if v.causality == "output" and v.real}
+            self.assertTrue({"bar", "deg", "rpm", "mm", "L/min"} <= units["none"], units["none"])
+            self.assertEqual(units["si"] - set(si), set())
+            self.assertTrue({"Pa", "rad", "rad/s", "m", "m3/s"} <= units["si"], units["si"])
+            defined = {unit.get("name"): unit.find("BaseUnit").attrib for unit in it.root.find("UnitDefinitions")}
+            for name in units["si"]:
+                self.assertEqual(float(defined[name].get("factor", 1)), 1, name)
+                self.assertEqual(tuple(int(defined[name].get(base, 0)) for base in ("kg", "m", "s", "rad")), si[name], name)
+
+    @staticmethod
+    def unit_of_type(it, variable):
+        types = {one.get("name"): one[0] if it.version == 2 else one for one in it.root.find("TypeDefinitions")}
+        return types[variable.all["declaredType"]].get("unit")
 
     def test_layout_of_the_archive(self):
         for (case, drive, version), file in self.files.items():
@@ -483,6 +513,7 @@ class Refusals(unittest.TestCase):
     def test_options(self):
         self.refused("--fmi", "1", says="--fmi")
         self.refused("--drive", "hand", says="--drive")
+        self.refused("--output-units", "metric", says="--output-units")
         self.refused("--accuracy", "1", says="--accuracy")
         self.refused("--drive", "case", says="[drive]")
         self.refused("--set", "pump.tilt_deg=95", says="tilt_deg")

@@ -81,8 +81,10 @@ const Truth& simulated(const Case& c) {
 // A unit in a file that goes.
 class PumpUnit {
  public:
-  PumpUnit(int version, const Case& the_case, fmu::Drive drive = fmu::Drive::speed) {
+  PumpUnit(int version, const Case& the_case, fmu::Drive drive = fmu::Drive::speed,
+           bool si_outputs = false) {
     fmu::UnitOptions wanted;
+    wanted.si_outputs = si_outputs;
     wanted.drive = drive;
     wanted.version = version == 2 ? fmu::Version::fmi2 : fmu::Version::fmi3;
     wanted.tolerance = 1e-11;
@@ -160,6 +162,55 @@ TEST(PumpUnitTest, CoSimulationIsSimulateWhateverTheStep) {
     EXPECT_LT(apart(coarse, truth, "a step per row, against simulate"), 1e-8);
     EXPECT_LT(apart(fine, truth, "seven steps per row"), 1e-8);
     EXPECT_LT(apart(fine, coarse, "against each other"), 1e-8);
+  }
+}
+
+// The same pump twice: only outputs differ, by the factors of their units.
+TEST(PumpUnitTest, OutputsInTheUnitsOfTheSi) {
+  const std::map<std::string, std::string> renamed = {
+      {"theta_deg", "theta_rad"}, {"shaft_rpm", "shaft_rad_per_s"},
+      {"xh_x2_mm", "xh_x2_m"},    {"p_1_bar", "p_1_Pa"},
+      {"Td_z1_Nm", "Td_z1_Nm"},   {"flow_delivery_l_per_min", "flow_delivery_m3_per_s"}};
+  for (const int version : {2, 3}) {
+    const PumpUnit columns(version, rated());
+    const PumpUnit si(version, rated(), fmu::Drive::speed, true);
+    const auto& plain = columns->description().variables;
+    const auto& others = si->description().variables;
+    ASSERT_EQ(plain.size(), others.size());
+    EXPECT_NE(columns->description().token, si->description().token);
+    for (const auto& [name, new_name] : renamed) {
+      ASSERT_TRUE(columns->description().find(name)) << name;
+      ASSERT_TRUE(si->description().find(new_name)) << new_name;
+    }
+    const auto a = columns->instantiate("pump"), b = si->instantiate("pump");
+    for (const auto& slave : {&a, &b}) {
+      (*slave)->enter_initialisation(0, kDuration);
+      (*slave)->exit_initialisation();
+      (*slave)->step(0, kDuration / kRows);
+    }
+    int changed = 0, outputs = 0;
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+      SCOPED_TRACE(plain[i].name + ", " + others[i].name);
+      EXPECT_EQ(plain[i].reference, others[i].reference);
+      if (plain[i].causality != "output" || plain[i].unit.empty()) {
+        EXPECT_EQ(plain[i].name, others[i].name);
+        EXPECT_EQ(plain[i].unit, others[i].unit);
+        continue;
+      }
+      ++outputs;
+      changed += plain[i].name != others[i].name;
+      EXPECT_EQ(plain[i].name != others[i].name, plain[i].unit != others[i].unit);
+      ASSERT_TRUE(plain[i].measure && others[i].measure);
+      EXPECT_EQ(others[i].measure->factor, 1);
+      EXPECT_EQ(plain[i].measure->exponents, others[i].measure->exponents);
+      const double there = a->get(plain[i]) * plain[i].measure->factor;
+      const double here = b->get(others[i]);
+      EXPECT_LE(std::abs(here - there),
+                4 * std::numeric_limits<double>::epsilon() * std::abs(here));
+    }
+    // Angle, angle, speed, speed, point of the film, ring contacts, pressures, flows.
+    EXPECT_GE(changed, 14);
+    EXPECT_GT(outputs - changed, 40);  // N, Nm, W
   }
 }
 

@@ -19,12 +19,18 @@ std::filesystem::path loaded_file() {
 std::vector<std::filesystem::path> module_folders() {
   std::error_code none;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", none);
-  std::vector<std::filesystem::path> folders = {program.parent_path() /
-                                                BENTAXIS_MODULES_FROM_BINARY};
+  const std::filesystem::path beside = program.parent_path();
+  std::vector<std::filesystem::path> folders = {beside / BENTAXIS_MODULES_FROM_BINARY};
+  // Of a build: from where its programs and its Python module are, so that no path of the machine
+  // that built it is in what is installed.
+  std::vector<std::filesystem::path> built = {beside / "../modules"};
   const std::filesystem::path file = loaded_file();
-  if (file.is_absolute() && file.extension() == ".so")
+  if (file.is_absolute() && file.extension() == ".so") {
     folders.push_back(file.parent_path() / BENTAXIS_MODULES_FROM_PYTHON);
-  folders.insert(folders.end(), {BENTAXIS_MODULES_INSTALLED, BENTAXIS_MODULES_BUILT});
+    built.push_back(file.parent_path() / "../../modules");
+  }
+  folders.emplace_back(BENTAXIS_MODULES_INSTALLED);
+  folders.insert(folders.end(), built.begin(), built.end());
   return folders;
 }
 

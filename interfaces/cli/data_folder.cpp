@@ -1,14 +1,23 @@
 #include "data_folder.h"
 
+#include <fstream>
+
 namespace bentaxis::cli {
 namespace fs = std::filesystem;
 
 std::optional<fs::path> shipped_folder(const std::string& name, const fs::path& file,
                                        const std::string& data_from_file) {
   std::error_code error;
-  for (const fs::path& folder :
-       {file.parent_path() / data_from_file / name, fs::path(BENTAXIS_SOURCE_DIR) / name})
-    if (fs::is_directory(folder, error)) return folder.lexically_normal();
+  if (const fs::path folder = file.parent_path() / data_from_file / name;
+      fs::is_directory(folder, error))
+    return folder.lexically_normal();
+  // In a build, not installed: that of the sources. The path is in a file, so that what is built
+  // from the same sources in two places is equal.
+  std::string sources;
+  std::ifstream beside(file.parent_path() / BENTAXIS_SOURCES_FILE);
+  if (std::getline(beside, sources))
+    if (const fs::path folder = fs::path(sources) / name; fs::is_directory(folder, error))
+      return folder.lexically_normal();
   return std::nullopt;
 }
 

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   CaseOption the_case;
-  std::string out, version = "2", drive;
+  std::string out, version = "2", drive, outputs;
   std::vector<fmu::Platform> platforms;
   fmu::UnitOptions unit;
 };
@@ -82,6 +82,7 @@ int make_unit(Options& options) {
                                ? fmu::installed_platforms(options.unit.version)
                                : options.platforms;
   options.unit.drive = drive_of(options.drive, the_case);
+  options.unit.si_outputs = options.outputs == "si";
   OutputFolder folder(place.has_parent_path() ? place.parent_path() : fs::path("."));
   folder.add(place.filename().string(), fmu::unit_archive(the_case, options.unit));
   folder.commit();
@@ -110,6 +111,12 @@ Command add_fmu_command(CommandParser program) {
               "torque, or [drive] of the case")
       .one_of({"speed", "torque", "case"})
       .text("speed|torque|case [speed; case where its [drive] is a torque or a motor]");
+  command
+      .option("--output-units", options->outputs,
+              "units of the outputs: those of the columns of simulate (deg, rpm, mm, bar, l/min), "
+              "or of the SI (rad, rad/s, m, Pa, m3/s); names end in them")
+      .one_of({"columns", "si"})
+      .text("columns|si [columns]");
   command
       .choices("--platforms", options->platforms, fmu::platform_names(),
                "whose libraries are in the FMU")

@@ -40,6 +40,7 @@ std::string token_of(const std::string& all) {
 std::string choice_text(const UnitChoice& choice) {
   std::string text = std::string("drive ") + word_of(choice.drive) + "\ntolerance " +
                      number_text(choice.tolerance) + "\n";
+  if (choice.si_outputs) text += "outputs si\n";
   if (choice.start_torque) text += "start_torque " + number_text(*choice.start_torque) + "\n";
   return text;
 }
@@ -75,7 +76,7 @@ double rounded(double value) {
 
 // @param why_not  where the mean torque cannot be computed: why
 UnitChoice choice_of(const Case& the_case, const UnitOptions& options, std::string& why_not) {
-  UnitChoice choice{options.drive, options.tolerance};
+  UnitChoice choice{options.drive, options.tolerance, {}, options.si_outputs};
   const bool own = the_case.drive && the_case.drive->kind == DriveKind::torque;
   if (options.drive == Drive::torque && !own && the_case.operation.speed_rpm != 0) try {
       choice.start_torque = rounded(mean_torque(the_case));

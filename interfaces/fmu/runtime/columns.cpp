@@ -6,6 +6,7 @@
 
 #include "bentaxis/coupled/open_system.h"
 #include "bentaxis/pump/time_signal.h"
+#include "bentaxis/pump/unit_of_measure.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/trajectory.h"
 #include "machine.h"
@@ -24,6 +25,40 @@ std::string meaning_of(const Channel& channel) {
   add("at ", channel.point);
   add("in ", channel.frame);
   return text;
+}
+
+// "l/min" at the end of a name: "_l_per_min".
+std::string ending_of(const std::string& unit) {
+  const auto slash = unit.find('/');
+  return "_" + (slash == std::string::npos
+                    ? unit
+                    : unit.substr(0, slash) + "_per_" + unit.substr(slash + 1));
+}
+
+// The unit of the SI for the same quantity; null where the table has none, or it is one.
+const UnitOfMeasure* si_unit_for(const UnitOfMeasure& unit) {
+  const auto& all = units_of_measure();
+  if (unit.factor == 1 || unit.offset != 0) return nullptr;
+  const auto found = std::find_if(all.begin(), all.end(), [&](const UnitOfMeasure& other) {
+    return other.quantity == unit.quantity && other.dimension == unit.dimension &&
+           other.factor == 1 && other.offset == 0;
+  });
+  return found == all.end() ? nullptr : &*found;
+}
+
+// The column in its SI unit, with a name that ends in it.
+void make_si(OutputPlace& place) {
+  PlantColumn& column = place.column;
+  const UnitOfMeasure* const unit = find_unit_of_measure(column.unit);
+  const UnitOfMeasure* const si = unit == nullptr ? nullptr : si_unit_for(*unit);
+  if (si == nullptr) return;
+  if (const std::string ending = ending_of(column.unit); column.name.ends_with(ending))
+    column.name.replace(column.name.size() - ending.size(), ending.size(), ending_of(si->name));
+  column.unit = si->name;
+  if (place.unit_in_si == unit->factor)
+    place.unit_in_si = 1;  // as the model has it
+  else
+    place.factor = unit->factor;
 }
 
 }  // namespace
@@ -58,7 +93,7 @@ std::vector<FlagRule> flag_rules(const Machine& machine) {
   return rules;
 }
 
-std::vector<OutputPlace> output_places(const Machine& machine) {
+std::vector<OutputPlace> output_places(const Machine& machine, bool si) {
   std::vector<OutputPlace> places;
   std::vector<std::string> names;
   const auto add = [&](PlantColumn column, OutputPlace::From from, std::size_t index, double unit) {
@@ -83,6 +118,7 @@ std::vector<OutputPlace> output_places(const Machine& machine) {
   const std::vector<OilColumn> oil = machine.oil->columns();
   for (std::size_t i = 0; i < oil.size(); ++i)
     add({oil[i].name, oil[i].unit, oil[i].meaning}, OutputPlace::From::oil, i, 1);
+  if (si) std::for_each(places.begin(), places.end(), make_si);
   return places;
 }
 
@@ -119,7 +155,8 @@ Case with_drive(Case the_case, Drive drive) {
 PlantColumns columns_of(const Case& the_case, const UnitChoice& choice) {
   const Machine machine(with_drive(the_case, choice.drive), {});
   PlantColumns all;
-  for (OutputPlace& place : output_places(machine)) all.outputs.push_back(std::move(place.column));
+  for (OutputPlace& place : output_places(machine, choice.si_outputs))
+    all.outputs.push_back(std::move(place.column));
   for (FlagRule& rule : flag_rules(machine)) all.flags.push_back(std::move(rule.column));
   const coupled::OpenSystem open(*machine.mechanics, *machine.oil, choice.drive == Drive::speed);
   for (const coupled::OpenState& state : open.states())

@@ -14,8 +14,10 @@ struct OutputPlace {
   enum class From { state, row, check, oil } from = From::row;
   std::size_t index = 0;  ///< there
   double unit_in_si = 1;  ///< what the value there is divided by
+  double factor = 1;      ///< and what the quotient is multiplied by
 };
-std::vector<OutputPlace> output_places(const Machine& machine);
+/// @param si  in units of the SI, and named so
+std::vector<OutputPlace> output_places(const Machine& machine, bool si);
 
 enum class Flag { inertia, contact, flank, film, point, thrust, saturation, vapour };
 struct FlagRule {

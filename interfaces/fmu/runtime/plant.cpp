@@ -360,7 +360,7 @@ class Plant::Implementation {
     stepper_.reset();
     open_.reset();
     machine_ = std::move(machine);
-    places_ = output_places(*machine_);
+    places_ = output_places(*machine_, choice_.si_outputs);
     rules_ = flag_rules(*machine_);
     oil_columns_ = machine_->oil->columns().size();
     loads_.chamber_pressure.assign(static_cast<std::size_t>(machine_->oil->pistons()), 0.0);
@@ -409,7 +409,7 @@ class Plant::Implementation {
                            : place.from == From::row ? row_[place.index]
                            : place.from == From::oil ? row_oil_[place.index]
                                                      : of_checks[place.index];
-      outputs_.push_back(value / place.unit_in_si);
+      outputs_.push_back(value / place.unit_in_si * place.factor);
     }
     flags_.clear();
     for (const FlagRule& rule : rules_) flags_.push_back(holds(rule.flag, now));

@@ -49,6 +49,11 @@ void read_choice(const std::filesystem::path& file, Resources& all) {
     const std::string value = blank == std::string::npos ? "" : line.substr(blank + 1);
     if (key == "drive") all.choice.drive = drive_in(value, file.string());
     if (key == "token") all.token = value;
+    if (key == "outputs") {
+      if (value != "si")
+        throw InputError(file.string() + ": outputs " + value + ": must be si, or not there");
+      all.choice.si_outputs = true;
+    }
     if (key == "start_torque") {
       all.choice.start_torque = number_in(value);
       if (!all.choice.start_torque)

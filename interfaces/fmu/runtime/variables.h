@@ -64,6 +64,7 @@ struct UnitChoice {
   double tolerance = 1e-9;  ///< of a step of co-simulation, as in coupled::Options
   /// Nm, start value of the input drive_torque; without it: that of the case, or 0.
   std::optional<double> start_torque = {};
+  bool si_outputs = false;  ///< as in UnitOptions
 };
 
 /// All variables of a unit, `reference` rising from 0 and equal to the place in the list. The same

@@ -33,6 +33,9 @@ struct UnitOptions {
   double tolerance = 1e-9;  ///< of a step of co-simulation, as in coupled::Options
   std::string model_name;   ///< empty: the name of the case
   std::string generated;    ///< date and time, ISO 8601 UTC; empty: left out of the description
+  /// Outputs in units of the SI, with names that say so ("p_1_Pa"); else as the columns of
+  /// `bentaxis simulate` ("p_1_bar").
+  bool si_outputs = false;
 };
 
 /// The bytes of the .fmu: a zip archive with modelDescription.xml, the libraries, the case with its
