@@ -159,10 +159,10 @@ const Part kDischarge = part_at([](auto& c) {
 
 template <auto kPort>
 Parameter discharge_parameter(const std::string& name) {
-  return number(name + "_discharge_coefficient", "Cd_" + name.substr(0, 1),
+  return number(name + "_discharge_coefficient", "",
                 FIELD((*c.hydraulics.*kPort).discharge_coefficient), kNoUnit, {0, 2, true},
-                kRequired, "of the openings of the " + name + " port",
-                {.practice = "0.6..0.8; without the key: `discharge_coefficient`",
+                {.words = "`discharge_coefficient`"}, "of the openings of the " + name + " port",
+                {.practice = "0.6..0.8",
                  .part = &kDischarge<kPort>,
                  .plausible = {0.3, 1, "edges have 0.6 to 0.7, a nozzle 1", {slips::kTenfold}}});
 }
@@ -256,14 +256,14 @@ Table hydraulics_table() {
       .meaning = "oil, ports, leakage and delivery line",
       .part = &kHydraulicData,
       .parameters = joined<Parameter>(
-          {{choice("oil_law", FIELD(c.hydraulics->oil_law),
-                   {"entrained_air", "dissolving_air", "dowson_higginson", "constant_density"},
-                   "entrained_air",
-                   "entrained_air: bulk modulus K + K' (P - P0), entrained air stays; "
-                   "dissolving_air: likewise, but the air dissolves up to `air_dissolved_bar`; "
-                   "dowson_higginson: density of mineral oil after Dowson and Higginson, entrained "
-                   "air stays; constant_density: bulk modulus K, density rho0 in every flow and "
-                   "balance"),
+          {{choice(
+                "oil_law", FIELD(c.hydraulics->oil_law),
+                {"entrained_air", "dissolving_air", "dowson_higginson", "constant_density"},
+                "entrained_air",
+                "entrained_air: bulk modulus K + K' (P - P0), entrained air stays. dissolving_air: "
+                "likewise, but the air dissolves up to `air_dissolved_bar`. dowson_higginson: "
+                "density of mineral oil after Dowson and Higginson, entrained air stays. "
+                "constant_density: bulk modulus K, density rho0 in every flow and balance"),
             number("density_kg_per_m3", "rho0", FIELD(c.hydraulics->density), {"kg/m3"},
                    {100, 5000}, {850.0}, "oil without air at P0",
                    {.practice = "mineral oil at 60 deg C: 840..870",
@@ -313,13 +313,15 @@ Table hydraulics_table() {
                    {0, 10000, true}, {30.0},
                    "gauge pressure from which on all entrained air is dissolved",
                    {.practice = "10..100", .active = kDissolvingAir}),
-            number("compressibility_per_GPa", "a", FIELD(c.hydraulics->compressibility),
-                   kPerGigapascal, {0, 100, true}, {0.6},
-                   "compressibility of the oil at P0 in place of 1/K",
-                   {.practice = "mineral oil: 0.6", .active = kDowsonHigginson}),
-            number("compressibility_decrease_per_GPa", "b",
+            number(
+                "compressibility_per_GPa", "", FIELD(c.hydraulics->compressibility), kPerGigapascal,
+                {0, 100, true}, {0.6},
+                "a of rho = rho0 (1 + a p/(1 + b p)), p above P0: compressibility there, in place "
+                "of 1/K",
+                {.practice = "mineral oil: 0.6", .active = kDowsonHigginson}),
+            number("compressibility_decrease_per_GPa", "",
                    FIELD(c.hydraulics->compressibility_decrease), kPerGigapascal, {0, 1000}, {1.7},
-                   "how it decreases with pressure: rho = rho0 (1 + a p/(1 + b p))",
+                   "b of the same law: how the compressibility decreases with pressure",
                    {.practice = "mineral oil: 1.7", .active = kDowsonHigginson}),
             number("lowest_pressure_bar", "P_min", FIELD(c.hydraulics->lowest_pressure), kBar,
                    {1e-8, 1}, {1e-4},
