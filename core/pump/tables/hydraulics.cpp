@@ -256,14 +256,15 @@ Table hydraulics_table() {
       .meaning = "oil, ports, leakage and delivery line",
       .part = &kHydraulicData,
       .parameters = joined<Parameter>(
-          {{choice(
-                "oil_law", FIELD(c.hydraulics->oil_law),
-                {"entrained_air", "dissolving_air", "dowson_higginson", "constant_density"},
-                "entrained_air",
-                "entrained_air: bulk modulus K + K' (P - P0), entrained air stays. dissolving_air: "
-                "likewise, but the air dissolves up to `air_dissolved_bar`. dowson_higginson: "
-                "density of mineral oil after Dowson and Higginson, entrained air stays. "
-                "constant_density: bulk modulus K, density rho0 in every flow and balance"),
+          {{choice("oil_law", FIELD(c.hydraulics->oil_law),
+                   {"entrained_air", "dissolving_air", "dowson_higginson", "constant_density"},
+                   "entrained_air",
+                   "how volume and density follow from the pressure: entrained_air (K, K', air "
+                   "that stays), "
+                   "dissolving_air (likewise, air dissolves up to `air_dissolved_bar`), "
+                   "dowson_higginson (mineral oil, air that stays), constant_density (rho0 "
+                   "everywhere, "
+                   "K)"),
             number("density_kg_per_m3", "rho0", FIELD(c.hydraulics->density), {"kg/m3"},
                    {100, 5000}, {850.0}, "oil without air at P0",
                    {.practice = "mineral oil at 60 deg C: 840..870",
