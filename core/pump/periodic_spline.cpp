@@ -58,12 +58,13 @@ double PeriodicSpline::operator()(double angle_deg) const {
          (a * (a * a - 1) * curvature_[i] + b * (b * b - 1) * curvature_[i + 1]) * h * h / 6;
 }
 
-double PeriodicSpline::slope_in(std::size_t i, double at) const {
-  const double h = x_[i + 1] - x_[i];
-  const double a = (x_[i + 1] - at) / h;
-  const double b = (at - x_[i]) / h;
-  return (y_[i + 1] - y_[i]) / h +
-         ((3 * b * b - 1) * curvature_[i + 1] - (3 * a * a - 1) * curvature_[i]) * h / 6;
+double PeriodicSpline::slope_in(std::size_t piece, double at) const {
+  const std::size_t next = piece + 1;
+  const double h = x_[next] - x_[piece];
+  const double a = (x_[next] - at) / h;
+  const double b = (at - x_[piece]) / h;
+  return (y_[next] - y_[piece]) / h +
+         ((3 * b * b - 1) * curvature_[next] - (3 * a * a - 1) * curvature_[piece]) * h / 6;
 }
 
 double PeriodicSpline::slope(double angle_deg) const {
