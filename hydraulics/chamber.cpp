@@ -46,12 +46,29 @@ Chamber::Chamber(const Geometry& g, double dead_volume)
   }
 }
 
+Chamber::Chamber(const Geometry& g, double dead_volume, const StrokeTable& stroke)
+    : Chamber(g, dead_volume) {
+  if (stroke.theta_deg.empty()) return;
+  given_.emplace(stroke.theta_deg, stroke.value);
+  const PeriodicSpline::Extremes extremes = given_->extremes();
+  lowest_ = extremes.least;
+  highest_ = extremes.greatest;
+  if (!stroke.is_volume) return;
+  area_ = 1;
+  dead_volume_ = lowest_;
+}
+
 Chamber::Height Chamber::height(double u) const {
   const double root = std::sqrt(length_squared_ - (c0_ + u * (c1_ + u * c2_)));
   return {rise_ * u + root, rise_ - (c1_ + 2 * c2_ * u) / (2 * root)};
 }
 
 Chamber::Volume Chamber::volume(double theta) const {
+  if (given_) {
+    const double angle = theta / kRadPerDegree;
+    return {dead_volume_ + area_ * ((*given_)(angle)-lowest_),
+            area_ * given_->slope(angle) / kRadPerDegree};
+  }
   const Height at = height(std::cos(theta));
   return {dead_volume_ + area_ * (highest_ - at.value), area_ * at.slope * std::sin(theta)};
 }

@@ -6,14 +6,25 @@
 
 namespace bentaxis::hydraulics {
 
+namespace {
+
+Orifice orifice_of(const PlatePort& port, Orifice common) {
+  common.discharge = port.discharge_coefficient.value_or(common.discharge);
+  return common;
+}
+
+}  // namespace
+
 Chambers::Chambers(const Case& the_case, const Fluid& fluid, const Orifice& orifice)
     : Element(the_case.pump.geometry.pistons),
-      chamber_(the_case.pump.geometry, the_case.hydraulics->dead_volume),
+      chamber_(the_case.pump.geometry, the_case.hydraulics->dead_volume,
+               the_case.hydraulics->stroke),
       delivery_(*the_case.hydraulics, the_case.hydraulics->delivery,
                 the_case.pump.geometry.bore_circle_radius),
       suction_(*the_case.hydraulics, the_case.hydraulics->suction,
                the_case.pump.geometry.bore_circle_radius),
-      orifice_(orifice),
+      into_delivery_(orifice_of(the_case.hydraulics->delivery, orifice)),
+      from_suction_(orifice_of(the_case.hydraulics->suction, orifice)),
       leakage_(the_case, fluid, chamber_),
       air_takes_time_(the_case.hydraulics->cavitation == Cavitation::rate &&
                       the_case.hydraulics->dissolved_air > 0),
@@ -56,8 +67,9 @@ Chambers::Sources Chambers::sources(System& sys) const {
 Chambers::Exchange Chambers::exchange(System& sys, double angle_deg, double volume,
                                       const Fluid::Mixture& at) const {
   const Side &source = sys[kSuction].side, &line = sys[kDelivery].side;
-  Exchange flows{orifice_.flow(suction_.area(angle_deg), source, at),
-                 orifice_.flow(delivery_.area(angle_deg), at, line), leakage_.flow(at, volume)};
+  Exchange flows{from_suction_.flow(suction_.area(angle_deg), source, at),
+                 into_delivery_.flow(delivery_.area(angle_deg), at, line),
+                 leakage_.flow(at, volume)};
   if (at.swelling != 0) {
     // All depend on the sum of both densities, by its root or in proportion.
     const double thinner = -at.density * at.swelling;
@@ -129,20 +141,24 @@ void Chambers::stamp(System& sys) const {
     }
     if (sys.rates == nullptr && sys.by_state == nullptr) continue;
     const double drive = now.seconds * mass / at.density - now.turning * volume.slope;
+    // What has too little oil comes to rest at the lowest pressure, where the law has one.
+    const Fluid::Expanding left = drive < 0 ? sys.fluid.expanding(sys.y[k]) : Fluid::Expanding();
+    const double stiffness = at.stiffness * left.value;
     const double swells = at.stiffness * at.swelling;
     const AirRate air = air_at_ > 0 ? air_rate(sys, k, at, volume.value, flows, from) : AirRate();
     if (sys.rates != nullptr) {
-      sys.rates[k] = at.stiffness * drive / volume.value;
+      sys.rates[k] = stiffness * drive / volume.value;
       if (air_at_ > 0) {
         sys.rates[air_at_ + k] = air.value;
         sys.rates[k] += swells * air.value;
       }
     }
     if (sys.by_state == nullptr) continue;
-    const double by_mass = at.stiffness * now.seconds;
+    const double by_mass = stiffness * now.seconds;
+    const double d_stiffness = at.d_stiffness * left.value + at.stiffness * left.slope;
     const double by_own = in.by_second - out.by_first - lost.by_first;
     sys.entry(k, k) =
-        (at.d_stiffness * drive + by_mass * (by_own - mass / at.stiffness) / at.density) /
+        (d_stiffness * drive + by_mass * (by_own - mass / at.density_stiffness) / at.density) /
         volume.value;
     // A port and its column, the flow from there by both sides and by the air, and the air's rate.
     const auto exchange_with = [&](System::Node& port, double by_port, double by_chamber,

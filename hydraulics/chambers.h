@@ -15,6 +15,7 @@ namespace bentaxis::hydraulics {
 /// that is out in each.
 class Chambers final : public Element {
  public:
+  /// @param orifice  of both ports, but for the discharge coefficient that a port may have
   Chambers(const Case& the_case, const Fluid& fluid, const Orifice& orifice);
 
   int count() const { return states(); }
@@ -68,7 +69,7 @@ class Chambers final : public Element {
 
   Chamber chamber_;
   PortOpening delivery_, suction_;
-  Orifice orifice_;
+  Orifice into_delivery_, from_suction_;
   Leakage leakage_;
   bool air_takes_time_;  // else it is out as in equilibrium
   double release_time_, dissolution_time_;

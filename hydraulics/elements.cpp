@@ -15,22 +15,23 @@ void PortVolume::name_states(OilColumn* all) const {
 
 void PortVolume::connect(System& sys) const {
   sys.free(port_, at());
-  const Side& oil = sys[port_].side;
+  System::Node& node = sys[port_];
   if (sys.by_state != nullptr)
-    sys[port_].per_mass = oil.stiffness * sys.now.seconds / (oil.density * volume_);
+    node.per_mass = node.stiffness * sys.now.seconds / (node.side.density * volume_);
 }
 
 void PortVolume::finish(System& sys) const {
   const System::Node& node = sys[port_];
-  const double stiffness = node.side.stiffness;
+  const double stiffness = node.stiffness;
   const double mass = node.arrives - node.leaves;
   if (sys.rates != nullptr)
     sys.rates[at()] = stiffness * sys.now.seconds * mass / (node.side.density * volume_);
   if (sys.by_state == nullptr) return;
   sys.stamp_others(port_, at(), -node.per_mass);
-  // The logarithmic derivative of K/P/density is (K/P)'/(K/P) - 1/(K/P).
+  // The logarithmic derivative of K/P/density is (K/P)'/(K/P) - 1/(K/P), the last one of density.
+  const double thinner = stiffness / node.side.stiffness;
   sys.entry(at(), at()) +=
-      node.per_mass * (mass * (node.d_stiffness - 1) / stiffness - sys.leaves_by_own(port_));
+      node.per_mass * (mass * (node.d_stiffness - thinner) / stiffness - sys.leaves_by_own(port_));
 }
 
 void PortVolume::stored(System& sys, Stored& all) const {
@@ -219,7 +220,8 @@ void AccumulatorBranch::stamp(System& sys) const {
       (oil.first - oil.volume * gas.d_stiffness / gas.stiffness) / gas.stiffness + oil.second;
   const double factor = sys.now.seconds / (gas.density * soft);
   sys.entry(at(), port.at) = factor * in.by_first;
-  sys.entry(at(), at()) = factor * (in.by_second - in.value * (1 / gas.stiffness + hardens / soft));
+  sys.entry(at(), at()) =
+      factor * (in.by_second - in.value * (1 / gas.density_stiffness + hardens / soft));
   sys.entry(port.at, port.at) -= port.per_mass * in.by_first;
   sys.entry(port.at, at()) = -port.per_mass * in.by_second;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
+#include <limits>
 
 namespace bentaxis::hydraulics {
 namespace {
@@ -44,7 +45,14 @@ Fluid::Fluid(const HydraulicData& data)
       saturation_(data.saturation_pressure),
       vapour_(data.vapour_pressure),
       boils_(data.cavitation != Cavitation::ignored && data.vapour_pressure > 0),
-      dissolves_(data.cavitation != Cavitation::ignored && data.dissolved_air > 0) {
+      dissolves_(data.cavitation != Cavitation::ignored && data.dissolved_air > 0),
+      air_dissolves_(data.oil_law == OilLaw::dissolving_air),
+      dowson_higginson_(data.oil_law == OilLaw::dowson_higginson),
+      constant_density_(data.oil_law == OilLaw::constant_density),
+      dissolved_pressure_(data.dissolved_pressure),
+      compressibility_(data.compressibility),
+      compressibility_limited_(data.compressibility + data.compressibility_decrease),
+      lowest_pressure_(data.lowest_pressure) {
   const double vapour = boils_ ? vapour_ : 0;
   const double air_at_saturation = saturation_ + atmosphere_ - vapour;
   if (boils_) {
@@ -55,7 +63,11 @@ Fluid::Fluid(const HydraulicData& data)
     log_saturation_ = std::log(air_at_saturation / (atmosphere_ - vapour));
     released_scale_ = (1 - air_share_) * data.dissolved_air * atmosphere_ / air_at_saturation;
   }
-  if (boils_ || dissolves_) sum_up_bubbles();
+  if (constant_density_) {
+    air_share_ = 0;
+    reference_density_ = data.density;
+  }
+  if (boils_ || dissolves_ || air_dissolves_) sum_up_bubbles();
 }
 
 Fluid::Smooth Fluid::air_pressure(double s) const {
@@ -76,19 +88,42 @@ Fluid::Smooth Fluid::under_saturation(const Smooth& q) const {
   return {w.value, -w.first * q.first, w.second * q.first * q.first - w.first * q.second};
 }
 
-void Fluid::add_oil_and_air(double pressure, const Smooth& q, Volumes& v) const {
+Fluid::Smooth Fluid::oil_volume(double pressure) const {
   const double over = pressure - atmosphere_;
+  if (dowson_higginson_) {
+    const double dense = 1 + compressibility_limited_ * over;
+    const double first = (1 - air_share_) * pressure * compressibility_ / (dense * dense);
+    return {(1 - air_share_) * (1 - compressibility_ * over / dense), first,
+            first * (2 * compressibility_limited_ * pressure / dense - 1)};
+  }
   const double modulus = bulk_modulus_ + modulus_slope_ * over;
   const double strain = pressure / modulus;
-  v.oil.value = (1 - air_share_) * (modulus_slope_ == 0
-                                        ? std::exp(-over / bulk_modulus_)
-                                        : std::pow(modulus / bulk_modulus_, -1 / modulus_slope_));
-  v.oil.first = v.oil.value * strain;
-  v.oil.second = v.oil.value * strain * (strain * (1 + modulus_slope_) - 1);
+  const double value = (1 - air_share_) * (modulus_slope_ == 0 ? std::exp(-over / bulk_modulus_)
+                                                               : std::pow(modulus / bulk_modulus_,
+                                                                          -1 / modulus_slope_));
+  return {value, value * strain, value * strain * (strain * (1 + modulus_slope_) - 1)};
+}
+
+Fluid::Smooth Fluid::undissolved(double pressure) const {
+  const double way = (pressure - atmosphere_) / dissolved_pressure_;
+  if (way <= 0) return {1, 0, 0};
+  if (way >= 1) return {0, 0, 0};
+  const double by_s = pressure / dissolved_pressure_;  // d(way)/ds, and its own derivative
+  const double slope = -6 * way * (1 - way);
+  return {1 - way * way * (3 - 2 * way), slope * by_s, (slope - 6 * (1 - 2 * way) * by_s) * by_s};
+}
+
+void Fluid::add_oil_and_air(double pressure, const Smooth& q, Volumes& v) const {
+  v.oil = oil_volume(pressure);
   v.air.value = air_share_ * std::exp(-q.value * inverse_exponent_);
   v.air.first = v.air.value * inverse_exponent_ * q.first;
   v.air.second =
       v.air.value * inverse_exponent_ * (inverse_exponent_ * q.first * q.first - q.second);
+  if (!air_dissolves_) return;
+  const Smooth left = undissolved(pressure), air = v.air;
+  v.air.value = air.value * left.value;
+  v.air.first = air.first * left.value - air.value * left.first;
+  v.air.second = air.second * left.value - 2 * air.first * left.first + air.value * left.second;
 }
 
 Fluid::Volumes Fluid::volumes(double s, double pressure) const {
@@ -114,11 +149,17 @@ Fluid::State Fluid::state_of(const Volumes& v, double pressure) const {
   result.density = reference_density_ / volume;
   result.stiffness = volume / slope;
   result.d_stiffness = volume * curvature / (slope * slope) - 1;
+  result.density_stiffness = result.stiffness;
   return result;
 }
 
 Fluid::State Fluid::state(double s) const {
   const double pressure = atmosphere_ * std::exp(s);
+  if (constant_density_) {
+    const double stiffness = bulk_modulus_ / pressure;
+    return {pressure, reference_density_, stiffness, -stiffness,
+            std::numeric_limits<double>::infinity()};
+  }
   return state_of(volumes(s, pressure), pressure);
 }
 
@@ -160,6 +201,12 @@ double Fluid::effective_bulk_modulus(double gauge) const {
 }
 
 double Fluid::oil_potential(double pressure) const {
+  if (constant_density_) return pressure - atmosphere_;
+  if (dowson_higginson_) {
+    const double over = pressure - atmosphere_, limited = compressibility_limited_;
+    return (1 - air_share_) * ((1 - compressibility_ / limited) * over +
+                               compressibility_ / (limited * limited) * std::log1p(limited * over));
+  }
   const double strain = (pressure - atmosphere_) / bulk_modulus_;
   const double oil = (1 - air_share_) * bulk_modulus_;
   if (modulus_slope_ == 0) return -oil * std::expm1(-strain);
@@ -188,12 +235,20 @@ Fluid::Bubbles Fluid::bubbles_between(double from, double to) const {
 }
 
 void Fluid::sum_up_bubbles() {
+  const double all_dissolved =
+      air_dissolves_ ? std::log1p(dissolved_pressure_ / atmosphere_) : kHighest;
   for (double s = boils_ ? log_vapour_ - kBeyond * kVapourWidth : kLowest; s < kHighest;) {
     places_.push_back(s);
     const double distance = boils_ ? std::abs(s - log_vapour_) : kHighest;
     const double next =
         s + std::clamp(kStretchPerDistance * distance, kVapourWidth / 2, kLongestStretch);
-    s = s < 0 && next > 0 ? 0 : next;  // atmospheric pressure, where the potential is exactly 0
+    // Atmospheric pressure, where the potential is exactly 0, and where no air is left.
+    if (s < 0 && next > 0)
+      s = 0;
+    else if (s < all_dissolved && next > all_dissolved)
+      s = all_dissolved;
+    else
+      s = next;
   }
   sums_.resize(places_.size());
   const auto add = [](Bubbles& to, const Bubbles& more, double sign) {
@@ -242,6 +297,7 @@ double Fluid::released_air(double s) const {
 }
 
 double Fluid::bubbles(double s) const {
+  if (constant_density_) return 0;
   const Volumes v = volumes(s, atmosphere_ * std::exp(s));
   const double bubbles = v.air.value + v.released.value;
   return bubbles / (v.oil.value + bubbles);

@@ -30,6 +30,14 @@ namespace bentaxis::hydraulics {
 /// t = ln((Ps - Pv)/(P - Pv)), b = 0.02 (nothing is left of it beyond a factor 2 in pressure); and
 /// t = ln(P/Pv), b = 0.002 (nothing is left 8 % above Pv), so that the law goes on, ever steeper, a
 /// few percent below Pv.
+///
+/// OilLaw::dissolving_air multiplies the entrained air by the share that is not dissolved yet,
+/// 1 - 3 L^2 + 2 L^3 with L = (P - P0)/(Pc - P0) held to [0, 1]. OilLaw::dowson_higginson has
+/// (1 + b p)/(1 + (a + b) p), p = P - P0, in place of the oil's exponential.
+///
+/// OilLaw::constant_density is no law of a mixture: rho0 in every flow and balance, and dP = -K
+/// dV/V. It keeps neither mass nor energy. Nothing bounds its s from below; where a volume has too
+/// little oil, its pressure comes to rest at `lowest_pressure` (see expanding()).
 class Fluid {
  public:
   explicit Fluid(const HydraulicData& data);
@@ -40,6 +48,8 @@ class Fluid {
     double density = 0;      ///< kg/m3
     double stiffness = 0;    ///< K(P)/P = d ln(density) / ds inverted; K(P) the effective modulus
     double d_stiffness = 0;  ///< its derivative with respect to s
+    /// ds / d ln(density): the stiffness, but infinite where the density is held constant.
+    double density_stiffness = 0;
   };
   State state(double s) const;
 
@@ -56,6 +66,17 @@ class Fluid {
     double value = 0, slope = 0;
   };
   AirOut equilibrium(double s) const;
+
+  /// OilLaw::constant_density: what is left of the rate of a pressure that falls, 1 - Pmin/P, so
+  /// that it ends at Pmin; and its derivative by s. 1 and 0 by the other laws.
+  struct Expanding {
+    double value = 1, slope = 0;
+  };
+  Expanding expanding(double s) const {
+    if (!constant_density_) return {};
+    const double left = lowest_pressure_ / (atmosphere_ * std::exp(s));
+    return {1 - left, left};
+  }
 
   /// s of a gauge pressure, Pa. Needs gauge > -atmosphere.
   double log_pressure(double gauge) const;
@@ -96,6 +117,8 @@ class Fluid {
     Smooth oil, air, released;  // first: -dv/ds
   };
   Volumes volumes(double s, double pressure) const;
+  Smooth oil_volume(double pressure) const;  // first: -dv/ds
+  Smooth undissolved(double pressure) const;
   // Volume of all of the dissolved air, out.
   double all_released(const Smooth& q) const {
     return dissolves_ ? released_scale_ * std::exp(log_saturation_ - q.value) : 0;
@@ -118,11 +141,15 @@ class Fluid {
       reference_density_;
   double saturation_, vapour_;  // Pa gauge, Pa absolute
   bool boils_, dissolves_;
-  double log_vapour_ = 0, vapour_over_air_ = 0;  // ln(Pv/P0), ln(Pv/(P0 - Pv))
-  double log_saturation_ = 0;                    // ln((Ps - Pv)/(P0 - Pv))
-  double released_scale_ = 0;                    // (1 - x) y P0/(Ps - Pv)
-  std::vector<double> places_;                   // in s, rising
-  std::vector<Bubbles> sums_;                    // of the bubbles' potential there
+  bool air_dissolves_, dowson_higginson_, constant_density_;
+  double dissolved_pressure_;                         // Pa gauge
+  double compressibility_, compressibility_limited_;  // a and a + b, 1/Pa
+  double lowest_pressure_;                            // Pa absolute
+  double log_vapour_ = 0, vapour_over_air_ = 0;       // ln(Pv/P0), ln(Pv/(P0 - Pv))
+  double log_saturation_ = 0;                         // ln((Ps - Pv)/(P0 - Pv))
+  double released_scale_ = 0;                         // (1 - x) y P0/(Ps - Pv)
+  std::vector<double> places_;                        // in s, rising
+  std::vector<Bubbles> sums_;                         // of the bubbles' potential there
 };
 
 }  // namespace bentaxis::hydraulics

@@ -22,7 +22,7 @@ Leakage::Leakage(const Case& the_case, const Fluid& fluid, const Chamber& chambe
         kPi * bore * cube(gaps.piston_gap) * (1 + 1.5 * gaps.eccentricity * gaps.eccentricity) / 12;
   length_ = gaps.piston_gap_length;
   if (gaps.engaged) area_ = kPi / 4 * bore * bore;
-  largest_volume_ = h.dead_volume + chamber.swept();
+  largest_volume_ = chamber.dead() + chamber.swept();
   if (gaps.plate_gap > 0) {
     const PortPlate& plate = the_case.pump.port_plate.value();
     double lands = 1 / std::log(plate.r4 / plate.r3);
@@ -56,16 +56,17 @@ Leakage::Parts Leakage::parts(const Fluid::State& chamber, double volume) const 
 MassFlow Leakage::flow(const Fluid::State& chamber, double volume) const {
   const double drop = chamber.pressure - case_state_.pressure;
   const double density = (chamber.density + case_state_.density) / 2;
-  MassFlow flow{
-      constant_ * density * drop,
-      constant_ * (density * chamber.pressure + drop * chamber.density / chamber.stiffness / 2), 0};
+  MassFlow flow{constant_ * density * drop,
+                constant_ * (density * chamber.pressure +
+                             drop * chamber.density / chamber.density_stiffness / 2),
+                0};
   if (viscosity_) {
     const double conductance = gaps(volume);
     const double gauge = chamber.pressure - atmosphere_;
     const double drive = viscosity_->drive(gauge, case_state_.pressure - atmosphere_);
     flow.value += conductance * density * drive;
     flow.by_first += conductance * (density * chamber.pressure / viscosity_->dynamic(gauge) +
-                                    drive * chamber.density / chamber.stiffness / 2);
+                                    drive * chamber.density / chamber.density_stiffness / 2);
   }
   return flow;
 }

@@ -26,13 +26,22 @@ class OilInTime : public Oil {
  public:
   OilInTime(const Case& the_case, const OilStart& start)
       : network_(the_case, Network::Use::time),
-        density_(network_.fluid().state(network_.suction_log_pressure()).density),
+        density_(checked(the_case).fluid().state(network_.suction_log_pressure()).density),
         load_size_(size_of(network_, start)),
         share_(share_of(the_case)),
         start_(start.states.empty() ? at_rest() : start.states) {
     if (start_.size() != static_cast<std::size_t>(network_.size()))
       throw InputError(the_case.file.string() + ": the oil has " + std::to_string(network_.size()) +
                        " states, and its start " + std::to_string(start_.size()));
+  }
+
+  // In time the mechanics move the pistons: of a stroke of its own the oil would do other work.
+  const Network& checked(const Case& the_case) const {
+    if (network_.chamber().is_given())
+      throw InputError(the_case.file.string() +
+                       ": [hydraulics] stroke_file: refused in a simulation in time: there the oil "
+                       "acts on pistons that move by the pump's own geometry");
+    return network_;
   }
 
   int pistons() const override { return network_.pistons(); }

@@ -15,7 +15,10 @@ struct Side {
   double stiffness = 0;  ///< d(state)/d(ln density); infinite for a density that is held
 
   Side(const Fluid::State& at)  // NOLINT(google-explicit-constructor): a fluid's state is one
-      : pressure(at.pressure), slope(at.pressure), density(at.density), stiffness(at.stiffness) {}
+      : pressure(at.pressure),
+        slope(at.pressure),
+        density(at.density),
+        stiffness(at.density_stiffness) {}
   Side(double at_pressure, double by_state, double at_density, double at_stiffness)
       : pressure(at_pressure), slope(by_state), density(at_density), stiffness(at_stiffness) {}
 };

@@ -64,7 +64,7 @@ class System {
  public:
   struct Node {
     Side side{0, 0, 0, 0};
-    double d_stiffness = 0, s = 0;
+    double stiffness = 0, d_stiffness = 0, s = 0;  ///< K/P: of the side it is the density's
     int at = 0, states = 0;  ///< the states that move its pressure, alike each; none: held
     double potential = std::numeric_limits<double>::quiet_NaN();  ///< J/kg; NaN: not asked for yet
     double arrives = 0;   ///< kg/s: what the chambers, or a line that ends here, bring
@@ -141,6 +141,7 @@ class System {
  private:
   void set(Terminal t, const Fluid::State& oil, double s) {
     nodes_[t].side = oil;
+    nodes_[t].stiffness = oil.stiffness;
     nodes_[t].d_stiffness = oil.d_stiffness;
     nodes_[t].s = s;
   }

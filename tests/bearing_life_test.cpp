@@ -226,6 +226,124 @@ TEST(PumpLife, IsThatOfTheReactions) {
   EXPECT_LT(life.hours, life.of(Bearing::tapered).hours);
 }
 
+// ---- Ball bearings in place of rollers
+
+const std::vector<std::string> kDeepGroove = {
+    "bearings.cylindrical_rolling_element=ball", "bearings.cylindrical_dynamic_rating_kN=23.4",
+    "bearings.cylindrical_balls=6", "bearings.cylindrical_ball_diameter_mm=11.1",
+    "bearings.cylindrical_ball_pitch_diameter_mm=43.5"};
+
+LifePoint constant_load(double tapered, double cylindrical) {
+  LifePoint point;
+  point.speed_rpm = 1500;
+  point.theta_deg = {0, 120, 240};
+  for (BearingLoads& loads : point.loads) {
+    loads.radial.assign(3, &loads == point.loads.data() ? tapered : cylindrical);
+    loads.axial.assign(3, 0.0);
+    loads.equivalent = loads.equivalent0 = loads.radial;
+  }
+  return point;
+}
+
+// The bearing of docs/external_benchmarks.md from the keys of a case: 12008.9 million revolutions
+// by MASTA, 12013.8579 by the public program; 16.9905 um by MASTA, 17.197 um by the standard's law.
+TEST(BallBearingLife, IsReachedFromACase) {
+  const Case the_case = rated(kDeepGroove);
+  EXPECT_EQ(the_case.ratings.cylindrical->element, RollingElement::ball);
+  const PumpLife life = pump_life(the_case, {constant_load(5000, 1000)});
+  const BearingLife& balls = life.of(Bearing::cylindrical);
+  EXPECT_NEAR(balls.reference_revolutions, 12013.8579, 1e-3);
+  EXPECT_NEAR(balls.reference_revolutions, 12008.9256, 0.005 * 12008.9256);
+  EXPECT_NEAR(balls.deflection, 17.197e-6, 0.001e-6);
+  EXPECT_NEAR(balls.reference_hours, 12013.8579e6 / (60 * 1500), 1);
+  EXPECT_NEAR(balls.revolutions, std::pow(23.4, 3), 1e-9 * std::pow(23.4, 3));
+  EXPECT_GT(balls.largest_ball_load, 1000.0 / 6);
+  // A roller bearing has none of it, and its own exponent.
+  const BearingLife& rollers = life.of(Bearing::tapered);
+  EXPECT_FALSE(is_computed(rollers.reference_revolutions));
+  EXPECT_FALSE(is_computed(rollers.deflection));
+  EXPECT_NEAR(rollers.revolutions, std::pow(21, 10.0 / 3), 1e-9 * std::pow(21, 10.0 / 3));
+}
+
+// Each bearing fails by its own distribution: 10 % of the pumps have failed where
+// (L/L1)^(9/8) + (L/L2)^(10/9) = 1.
+TEST(BallBearingLife, CombinesByEachWeibullSlope) {
+  const PumpLife life = pump_life(rated(kDeepGroove), {constant_load(5000, 1000)});
+  const double l = life.revolutions;
+  EXPECT_NEAR(std::pow(l / life.of(Bearing::tapered).revolutions, 9.0 / 8) +
+                  std::pow(l / life.of(Bearing::cylindrical).revolutions, 10.0 / 9),
+              1, 1e-12);
+  const double lives[] = {3000, 7000}, rollers[] = {9.0 / 8, 9.0 / 8},
+               balls[] = {10.0 / 9, 10.0 / 9};
+  EXPECT_EQ(combined_life(lives, rollers), combined_life(lives));
+  EXPECT_NEAR(combined_life(lives, balls),
+              std::pow(std::pow(3000, -10.0 / 9) + std::pow(7000, -10.0 / 9), -0.9), 1e-9);
+  const double none[] = {3000, not_computed()};
+  EXPECT_FALSE(is_computed(combined_life(none, balls)));
+}
+
+// Under the loads of a turn: Miner's rule over the angles, written out.
+TEST(BallBearingLife, OfATurnAddsUpItsAngles) {
+  const Case the_case = rated(kDeepGroove);
+  const LifePoint point = turn(the_case);
+  const BallBearing six{6, 0.0111, 0.0435, 0.52, 0.53, 0, 23400};
+  double used = 0, deflection = 0;
+  for (const double radial : point.loads[1].radial) {
+    const BallBearingState at = equilibrium(six, {.radial = radial});
+    used += 1 / at.reference_life / static_cast<double>(point.theta_deg.size());
+    deflection = std::max(deflection, at.radial);
+  }
+  const BearingLife life = pump_life(the_case, {point}).of(Bearing::cylindrical);
+  EXPECT_NEAR(life.reference_revolutions * used, 1, 1e-9);
+  EXPECT_NEAR(life.deflection, deflection, 1e-12 * deflection);
+}
+
+TEST(BallBearingLife, NeedsLessLoadThanRollers) {
+  // 300 N: above 0.01 and below 0.02 of 23.4 kN.
+  const auto slides = [](const Case& the_case, double load) {
+    for (const LifeLimit& limit : pump_life(the_case, {constant_load(5000, load)}).limits)
+      if (limit.bearing == Bearing::cylindrical && limit.key == "smallest")
+        return limit.violated_share > 0;
+    return false;
+  };
+  EXPECT_FALSE(slides(rated(kDeepGroove), 300));
+  EXPECT_TRUE(slides(rated(kDeepGroove), 200));
+  EXPECT_TRUE(slides(rated({"bearings.cylindrical_dynamic_rating_kN=23.4"}), 300));
+}
+
+TEST(BallBearingLife, KeysAreHeldToEachOther) {
+  const auto why = [](std::vector<std::string> changes) -> std::string {
+    try {
+      rated(changes);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto with = [](const std::string& more) {
+    std::vector<std::string> all = kDeepGroove;
+    all.push_back(more);
+    return all;
+  };
+  using testing::HasSubstr;
+  EXPECT_EQ(why(kDeepGroove), "");
+  EXPECT_THAT(why(with("bearings.cylindrical_rolling_element=needle")),
+              HasSubstr("cylindrical_rolling_element"));
+  EXPECT_THAT(why(with("bearings.cylindrical_rolling_element=roller")),
+              HasSubstr("needs the rolling element \"ball\""));
+  EXPECT_THAT(why(with("bearings.cylindrical_ball_pitch_diameter_mm=11")),
+              HasSubstr("must be larger than the ball's diameter"));
+  EXPECT_THAT(why(with("bearings.cylindrical_radial_clearance_um=1200")),
+              HasSubstr("tenth of the ball's diameter"));
+  EXPECT_THAT(why(with("bearings.cylindrical_balls=2")), HasSubstr("cylindrical_balls"));
+  // Factors of a taper are not those of balls.
+  const std::vector<std::string> angular = {"bearings.tapered_rolling_element=ball"};
+  EXPECT_THAT(why(angular), HasSubstr("tapered_e"));
+  EXPECT_EQ(why({"bearings.tapered_rolling_element=ball", "bearings.tapered_e=1.14",
+                 "bearings.tapered_X=0.35", "bearings.tapered_Y0=0.26"}),
+            "");
+}
+
 // Shares are in proportion: neither their sum nor share times speed may leave the range of numbers.
 TEST(PumpLife, SharesOfAnySizeAreInProportion) {
   const Case fast = rated({"operation.speed_rpm=1500"}), slow = rated({"operation.speed_rpm=-500"});

@@ -11,9 +11,12 @@
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/hydraulics/accuracy_log.h"
+#include "bentaxis/hydraulics/oil_in_time.h"
 #include "bentaxis/hydraulics/steady_state.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "chamber.h"
 #include "fluid.h"
 #include "integrator.h"
 #include "network.h"
@@ -230,6 +233,12 @@ TEST(Oil, PotentialIsTheIntegralOfPressureOverDensity) {
     for (const double saturation : {0.0, pascals(3)}) laws.push_back(oil(0.09, saturation, vapour));
   laws.push_back(oil(0, 0, 100, 10));
   laws.back().air_exponent = 1;
+  laws.push_back(oil(0.09, pascals(3), 100));
+  laws.back().oil_law = OilLaw::dowson_higginson;
+  for (const OilLaw named : {OilLaw::dissolving_air, OilLaw::dowson_higginson}) {
+    laws.push_back(laws[0]);
+    laws.back().oil_law = named;
+  }
   for (std::size_t law = 0; law < laws.size(); ++law) {
     const Fluid fluid(laws[law]);
     EXPECT_EQ(fluid.potential(0), 0) << law;
@@ -253,6 +262,146 @@ TEST(Oil, PotentialIsTheIntegralOfPressureOverDensity) {
       EXPECT_GT(std::abs(sum), 0.1 * kAtmosphere / 850) << law;
     }
   }
+}
+
+HydraulicData law(OilLaw named) {
+  HydraulicData data = *rated().hydraulics;
+  data.oil_law = named;
+  return data;
+}
+
+// Written out here again, with numbers of the sources.
+TEST(OilLaw, DensitiesAreThoseOfTheSources) {
+  // Dowson and Higginson: 0.6 p/(1 + 1.7 p), p in GPa; x = 0.5 % of air.
+  const HydraulicData dowson = law(OilLaw::dowson_higginson);
+  const Fluid mineral(dowson);
+  for (const double bar : {0.0, 100.0, 275.0, 5000.0}) {
+    const double s = mineral.log_pressure(pascals(bar)), p = bar * 1e-4;
+    const double liquid = 1 / (1 + 0.6 * p / (1 + 1.7 * p));
+    const double air = 0.005 * std::pow((pascals(bar) + kAtmosphere) / kAtmosphere, -1 / 1.4);
+    EXPECT_NEAR(volume(mineral, dowson, s), 0.995 * liquid + air, scaled(kRoundOff)) << bar;
+  }
+  // Air that dissolves: all of it at P0 and below, half of it half way, none from 30 bar on.
+  const HydraulicData dissolving = law(OilLaw::dissolving_air);
+  const Fluid soluble(dissolving), entrained(law(OilLaw::entrained_air));
+  for (const double bar : {-0.9, -0.3, 0.0})
+    EXPECT_EQ(soluble.density(pascals(bar)), entrained.density(pascals(bar))) << bar;
+  const auto air_at = [&](double bar) {
+    const double oil = 0.995 * std::exp(-pascals(bar) / 1.4e9);
+    return volume(soluble, dissolving, soluble.log_pressure(pascals(bar))) - oil;
+  };
+  EXPECT_NEAR(air_at(15), 0.5 * 0.005 * std::pow(pascals(15) / kAtmosphere + 1, -1 / 1.4), 1e-12);
+  for (const double bar : {30.0, 31.0, 275.0}) {
+    EXPECT_NEAR(air_at(bar), 0, scaled(kRoundOff)) << bar;
+    EXPECT_NEAR(soluble.effective_bulk_modulus(pascals(bar)), 1.4e9, 1e-6 * 1.4e9) << bar;
+  }
+  EXPECT_LT(soluble.effective_bulk_modulus(pascals(20)), 1.38e9);
+  EXPECT_EQ(soluble.bubbles(soluble.log_pressure(pascals(40))), 0);
+  EXPECT_GT(soluble.bubbles(soluble.log_pressure(pascals(20))), 0);
+}
+
+// By central differences, h = 1e-5: h^2 of the value and round-off over h.
+TEST(OilLaw, DerivativesAreExact) {
+  for (const OilLaw named : {OilLaw::dissolving_air, OilLaw::dowson_higginson}) {
+    const Fluid fluid(law(named));
+    const double h = 1e-5;
+    for (double s = -8; s < 8; s += 0.0371) {
+      const auto at = fluid.state(s), more = fluid.state(s + h), less = fluid.state(s - h);
+      EXPECT_NEAR((std::log(more.density) - std::log(less.density)) / (2 * h) * at.stiffness, 1,
+                  scaled(1e-6) * (1 + at.stiffness / 1e4))
+          << s;
+      EXPECT_EQ(at.density_stiffness, at.stiffness);
+      EXPECT_NEAR((more.stiffness - less.stiffness) / (2 * h), at.d_stiffness,
+                  scaled(1e-5) * (std::abs(at.d_stiffness) + at.stiffness))
+          << s;
+    }
+  }
+}
+
+TEST(OilLaw, ConstantDensityIsOneDensityAndAModulus) {
+  HydraulicData data = law(OilLaw::constant_density);
+  data.lowest_pressure = 50;
+  const Fluid fluid(data);
+  for (const double s : {-20.0, -1.0, 0.0, 5.0}) {
+    const auto at = fluid.state(s);
+    EXPECT_EQ(at.density, 850);
+    EXPECT_NEAR(at.stiffness * at.pressure, 1.4e9, 1e-4);
+    EXPECT_EQ(at.d_stiffness, -at.stiffness);
+    EXPECT_EQ(1 / at.density_stiffness, 0);
+    EXPECT_NEAR(fluid.potential(s), (at.pressure - kAtmosphere) / 850, 1e-9 * at.pressure);
+    EXPECT_NEAR(fluid.expanding(s).value, 1 - 50 / at.pressure, 1e-9 * 50 / at.pressure);
+    EXPECT_NEAR(fluid.expanding(s).slope, 50 / at.pressure, 1e-9 * 50 / at.pressure);
+    EXPECT_EQ(Fluid(law(OilLaw::entrained_air)).expanding(s).value, 1);
+  }
+}
+
+TEST(OilLaw, JacobianOfConstantDensityIsThatOfTheRates) {
+  Case the_case = rated();
+  the_case.hydraulics->oil_law = OilLaw::constant_density;
+  the_case.hydraulics->suction_line = SuctionLineData{2, 0.04, 2, 1e-3};
+  const Network network(the_case);
+  const int size = network.size();
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> share(0, 1);
+  const double lowest = std::log(the_case.hydraulics->lowest_pressure / kAtmosphere);
+  int expanding = 0;
+  for (const double x : {3.0, 21.0, 40.0, 66.0}) {
+    std::vector<double> y(size);
+    // Some near the lowest pressure, some of a running pump.
+    for (int k = 0; k < 5; ++k)
+      y[k] = k % 2 == 0 ? lowest + 0.1 + 2 * share(random) : share(random);
+    y[5] = 5.5;
+    y[6] = -0.1;
+    y[7] = 0.9;
+    const double load = 9e-6;
+    std::vector<double> by_state(static_cast<std::size_t>(size) * size), by_load(size), low(size),
+        high(size), rates(size);
+    network.jacobian(x, y.data(), load, by_state.data(), by_load.data());
+    network.rates(x, y.data(), load, rates.data());
+    for (int k = 0; k < 5; k += 2) expanding += rates[k] < 0;
+    const double h = 1e-6;
+    for (int j = 0; j < size; ++j) {
+      auto to = y;
+      to[j] = y[j] - h;
+      network.rates(x, to.data(), load, low.data());
+      to[j] = y[j] + h;
+      network.rates(x, to.data(), load, high.data());
+      for (int i = 0; i < size; ++i) {
+        const double slope = (high[i] - low[i]) / (2 * h);
+        EXPECT_NEAR(slope, by_state[j * size + i],
+                    scaled(1e-5) * (1 + std::abs(slope) + std::abs(rates[i])))
+            << x << ": " << i << " by " << j;
+      }
+    }
+  }
+  EXPECT_GT(expanding, 0);  // else nothing above is of the lowest pressure
+}
+
+TEST(OilLaw, WhatDoesNotGoTogetherIsRefused) {
+  using testing::HasSubstr;
+  const auto refusal = [](const std::vector<std::string>& changes) -> std::string {
+    try {
+      read_case(kCases / "bap63_rated_hydraulic.toml", changes);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string key = "hydraulics.oil_law=", air = "hydraulics.cavitation=equilibrium";
+  EXPECT_EQ(refusal({key + "dowson_higginson", air}), "");
+  EXPECT_EQ(refusal({key + "dissolving_air"}), "");
+  EXPECT_THAT(refusal({key + "dissolving_air", air}), HasSubstr("oil_law"));
+  EXPECT_THAT(refusal({key + "constant_density", air}), HasSubstr("oil_law"));
+  EXPECT_THAT(refusal({key + "water"}), HasSubstr("oil_law"));
+  EXPECT_THAT(refusal({key + "constant_density", "hydraulics.lowest_pressure_bar=0.9",
+                       "pressure.suction_bar=-0.2"}),
+              HasSubstr("lowest_pressure_bar"));
+  EXPECT_THAT(refusal({key + "dissolving_air", "hydraulics.air_dissolved_bar=0"}),
+              HasSubstr("air_dissolved_bar"));
+  // What belongs to another law is checked and unused.
+  const Case plain = rated(), with = read_case(kCases / "bap63_rated_hydraulic.toml",
+                                               {"hydraulics.compressibility_per_GPa=1"});
+  EXPECT_EQ(Fluid(*plain.hydraulics).density(2e7), Fluid(*with.hydraulics).density(2e7));
 }
 
 // Torn oil: without the law the chambers are far below vapour pressure and say nothing of it.
@@ -834,6 +983,177 @@ TEST_F(PortFile, TableOfTheGeometryGivesTheSamePressures) {
   EXPECT_EQ(again.hydraulics->delivery.table.area, the_case.hydraulics->delivery.table.area);
   EXPECT_EQ(again.hydraulics->suction.table.theta_deg,
             the_case.hydraulics->suction.table.theta_deg);
+}
+
+// ---- Stroke of a file
+
+class StrokeFile : public PortFile {
+ protected:
+  // What the pump's own geometry does, as a file.
+  void write_own(const Case& the_case, bool volume, int points) const {
+    const Geometry& g = the_case.pump.geometry;
+    const Chamber own(g, the_case.hydraulics->dead_volume);
+    const double area = kPi / 4 * g.bore_diameter * g.bore_diameter;
+    std::ofstream file(folder_ / "stroke.csv");
+    file << (volume ? "theta_deg,volume_cm3\n" : "theta_deg,stroke_mm\n");
+    for (int i = 0; i < points; ++i) {
+      const double theta = 360.0 * i / points;
+      const double cubic_metres = own.volume(radians(theta)).value;
+      // A stroke has any zero.
+      file << number_text(theta) << ","
+           << number_text(volume ? cubic_metres * 1e6 : cubic_metres / area * 1e3 - 17) << "\n";
+    }
+  }
+  Case with_file() const {
+    return read_case(folder_ / "case.toml", {"hydraulics.stroke_file=stroke.csv"});
+  }
+  std::string refusal_of_stroke(const std::string& table) const {
+    std::ofstream(folder_ / "stroke.csv") << table;
+    return refusal({"hydraulics.stroke_file=stroke.csv"});
+  }
+};
+
+// Of a spline of step h = 1 deg through a sine: 5/384 h^4 = 1.2e-9 of the amplitude at most, a
+// slope of h^3/24 = 2.2e-7; harmonics of the stroke are small.
+TEST_F(StrokeFile, OfTheOwnGeometryIsTheOwnVolume) {
+  const Case plain = rated();
+  const Chamber own(plain.pump.geometry, plain.hydraulics->dead_volume);
+  for (const bool volume : {false, true}) {
+    write_own(plain, volume, 360);
+    const Case the_case = with_file();
+    EXPECT_EQ(the_case.hydraulics->stroke.is_volume, volume);
+    const Chamber given(the_case.pump.geometry, the_case.hydraulics->dead_volume,
+                        the_case.hydraulics->stroke);
+    EXPECT_TRUE(given.is_given());
+    EXPECT_NEAR(given.swept(), own.swept(), 1e-8 * own.swept());
+    EXPECT_NEAR(given.dead(), 3e-6, 1e-8 * own.swept());
+    for (double theta = -7; theta < 7; theta += 0.0137) {
+      EXPECT_NEAR(given.volume(theta).value, own.volume(theta).value, 1e-8 * own.swept()) << theta;
+      EXPECT_NEAR(given.volume(theta).slope, own.volume(theta).slope, 1e-6 * own.swept()) << theta;
+    }
+  }
+}
+
+TEST_F(StrokeFile, RateIsContinuousAndTheVolumesSlope) {
+  std::ofstream(folder_ / "stroke.csv")
+      << "theta_deg,stroke_mm\n0,0\n70,9\n181,21\n200,20\n300,2\n";
+  const Case the_case = with_file();
+  const Chamber given(the_case.pump.geometry, 3e-6, the_case.hydraulics->stroke);
+  const double h = 1e-6;
+  for (const double deg : {0.0, 70.0, 181.0, 200.0, 300.0, 360.0, 35.0, 190.0, 331.0}) {
+    const double theta = radians(deg);
+    const auto at = given.volume(theta), more = given.volume(theta + h),
+               less = given.volume(theta - h);
+    EXPECT_NEAR((more.value - less.value) / (2 * h), at.slope, 1e-6 * given.swept()) << deg;
+    // A jump would not fall with h; the slope's own slope is below 100 strokes per rad^2.
+    EXPECT_NEAR(more.slope, less.slope, 2 * h * 100 * given.swept()) << deg;
+  }
+  // Extremes lie between the points too.
+  double least = 1, greatest = 0;
+  for (double theta = 0; theta < 2 * kPi; theta += 1e-4) {
+    least = std::min(least, given.volume(theta).value);
+    greatest = std::max(greatest, given.volume(theta).value);
+  }
+  EXPECT_NEAR(least, 3e-6, 1e-7 * given.swept());
+  EXPECT_NEAR(greatest - least, given.swept(), 1e-7 * given.swept());
+}
+
+// Volumes differ by 1e-9 of the stroke: K times that over the dead volume is 2e-7 of the peak.
+TEST_F(StrokeFile, OfTheOwnGeometryGivesTheSamePressures) {
+  const Case plain = rated();
+  const SteadyState own = steady_state(plain);
+  write_own(plain, false, 360);
+  const SteadyState given = steady_state(with_file());
+  EXPECT_NEAR(given.summary.displacement, own.summary.displacement,
+              1e-8 * own.summary.displacement);
+  double worst = 0;
+  for (double theta = 0; theta < 360; theta += 0.7)
+    worst = std::max(worst, std::abs(own.computed->gauge(theta) - given.computed->gauge(theta)));
+  EXPECT_LT(worst, 5e-6 * own.computed->peak);
+  // Another stroke has another flow: 5 bores of 22.5 mm, 16 mm.
+  std::ofstream(folder_ / "stroke.csv") << "theta_deg,stroke_mm\n0,0\n90,8\n180,16\n270,8\n";
+  EXPECT_NEAR(steady_state(with_file()).summary.displacement, 31.809e-6, 0.001e-6);
+}
+
+TEST_F(StrokeFile, IsWrittenAndReadAgainAndListedAsAnInput) {
+  write_own(rated(), false, 36);
+  const Case the_case = with_file();
+  std::ofstream(folder_ / "again.toml") << case_text(the_case);
+  EXPECT_EQ(read_case(folder_ / "again.toml").hydraulics->stroke.value,
+            the_case.hydraulics->stroke.value);
+  std::vector<std::string> names;
+  for (const InputFile& input : the_case.inputs) names.push_back(input.file.filename().string());
+  EXPECT_THAT(names, testing::Contains("stroke.csv"));
+  EXPECT_EQ(rated().hydraulics->stroke.theta_deg.size(), 0U);
+}
+
+TEST_F(StrokeFile, IsRefusedInTime) {
+  write_own(rated(), false, 36);
+  try {
+    oil_in_time(with_file(), OilStart());
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("[hydraulics] stroke_file"));
+  }
+  EXPECT_NO_THROW(oil_in_time(rated(), OilStart()));
+}
+
+TEST_F(StrokeFile, FaultsAreNamed) {
+  using testing::HasSubstr;
+  const std::string head = "theta_deg,stroke_mm\n";
+  EXPECT_EQ(refusal_of_stroke(head + "0,0\n100,5\n200,-5\n300,0\n"), "");
+  EXPECT_THAT(
+      refusal_of_stroke("theta_deg,volume_l\n0,1\n"),
+      HasSubstr("stroke.csv:1: header must be theta_deg,stroke_mm or theta_deg,volume_cm3"));
+  EXPECT_THAT(refusal_of_stroke(head + "0,0\n100,5\n90,5\n300,0\n"),
+              HasSubstr("stroke.csv:4: theta_deg = 90: must be > 100"));
+  EXPECT_THAT(refusal_of_stroke(head + "0,0\n100,5\n200,5\n360,0\n"),
+              HasSubstr("stroke.csv:5: theta_deg = 360: must be < 360"));
+  EXPECT_THAT(refusal_of_stroke(head + "0,0\n100,5\n200,5\n"),
+              HasSubstr("stroke.csv: has 3 points, must be at least 4"));
+  EXPECT_THAT(refusal_of_stroke(head + "0,3\n100,3\n200,3\n300,3\n"), HasSubstr("no stroke"));
+  EXPECT_THAT(refusal_of_stroke("theta_deg,volume_cm3\n0,3\n100,0\n200,3\n300,3\n"),
+              HasSubstr("stroke.csv:3: volume_cm3 = 0: must be > 0"));
+  EXPECT_THAT(refusal({"hydraulics.stroke_file=none.csv"}), HasSubstr("no such file"));
+}
+
+// ---- Discharge coefficients of the ports
+
+// Area times coefficient is what counts. Tables: their cubics are linear in the areas, so that all
+// that is left is round-off, which the search amplifies to its curves' error.
+TEST(Discharge, OfAPortIsAreaTimesCoefficient) {
+  const fs::path file = fs::path(BENTAXIS_SOURCE_DIR) / "tests" / "close_points" / "case.toml";
+  const Case scaled_areas = read_case(file);
+  ASSERT_EQ(scaled_areas.hydraulics->discharge_coefficient, 0.6);
+  Case own = read_case(file, {"hydraulics.suction_discharge_coefficient=0.8"});
+  for (double& area : own.hydraulics->suction.table.area) area *= 0.6 / 0.8;
+  EXPECT_EQ(own.hydraulics->suction.discharge_coefficient, 0.8);
+  EXPECT_FALSE(own.hydraulics->delivery.discharge_coefficient);
+  const SteadyState a = steady_state(scaled_areas), b = steady_state(own);
+  const double allowed = 4 * (a.computed->error + b.computed->error);
+  EXPECT_LT(allowed, 1e-5 * a.computed->peak);
+  Case half = own;  // the coefficient counts
+  half.hydraulics->suction.discharge_coefficient = 0.4;
+  const SteadyState c = steady_state(half);
+  double worst = 0, other = 0;
+  for (double theta = 0; theta < 360; theta += 0.7) {
+    worst = std::max(worst, std::abs(a.computed->gauge(theta) - b.computed->gauge(theta)));
+    other = std::max(other, std::abs(a.computed->gauge(theta) - c.computed->gauge(theta)));
+  }
+  EXPECT_LT(worst, allowed);
+  EXPECT_GT(other, 1e-3 * a.computed->peak);
+}
+
+TEST(Discharge, TheCommonOneOfEachPortIsTheSameToTheBit) {
+  const SteadyState a = steady_state(rated());
+  const SteadyState b = steady_state(read_case(kCases / "bap63_rated_hydraulic.toml",
+                                               {"hydraulics.delivery_discharge_coefficient=0.67",
+                                                "hydraulics.suction_discharge_coefficient=0.67"}));
+  EXPECT_EQ(a.chamber.pressure, b.chamber.pressure);
+  EXPECT_EQ(a.states, b.states);
+  EXPECT_THROW(read_case(kCases / "bap63_rated_hydraulic.toml",
+                         {"hydraulics.suction_discharge_coefficient=0"}),
+               InputError);
 }
 
 // Corners as the manual asks for them: a point at the corner and one on each side, close by.

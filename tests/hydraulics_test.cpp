@@ -359,6 +359,11 @@ std::vector<Changed> parameters_of_the_plain_circuit() {
   return {{{}, "hydraulics.bulk_modulus_MPa", 1400},
           {{}, "hydraulics.dead_volume_cm3", 3},
           {{}, "hydraulics.air_percent", 0.5},
+          {{}, "hydraulics.delivery_discharge_coefficient", 0.6},
+          {{}, "hydraulics.suction_discharge_coefficient", 0.8},
+          {{"hydraulics.oil_law=dowson_higginson"}, "hydraulics.compressibility_per_GPa", 0.6},
+          {{"hydraulics.oil_law=dissolving_air"}, "hydraulics.air_dissolved_bar", 30},
+          {{"hydraulics.oil_law=constant_density"}, "hydraulics.bulk_modulus_MPa", 1400},
           {{}, "hydraulics.delivery_notch_deg", 18},
           {{}, "port_plate.delivery_arc_deg", 204, "[", ", 336]"},
           {{}, "pump.piston_length_mm", 46},
@@ -430,6 +435,33 @@ INSTANTIATE_TEST_SUITE_P(
                     Changed{{"delivery_line.length_m=1", "delivery_line.diameter_mm=20"},
                             "hydraulics.delivery_volume_l",
                             0.5}));
+
+// The size of the load is sought, so that its own coefficient moves no pressure: what the common
+// one does is what both ports' do. Rates are to the tolerance of the variational equations, 1e-9
+// per step, and the cases' 1e-6 apart.
+TEST(PressureRates, OfTheCommonCoefficientAreThoseOfBothPorts) {
+  const std::string both[] = {"hydraulics.delivery_discharge_coefficient",
+                              "hydraulics.suction_discharge_coefficient"};
+  const auto changed = [&](const std::string& key) {
+    std::vector<std::string> circuit;
+    if (key != "hydraulics.discharge_coefficient")
+      circuit.push_back((key == both[0] ? both[1] : both[0]) + "=0.67");
+    return Changed{circuit, key, 0.67};
+  };
+  std::vector<double> angles;
+  for (int i = 0; i < 72; ++i) angles.push_back(5 * i + 0.3);
+  const SteadyState base = steady_state(changed("hydraulics.discharge_coefficient").at(0));
+  std::vector<Neighbours> neighbours;
+  for (const std::string& key : {std::string("hydraulics.discharge_coefficient"), both[0], both[1]})
+    neighbours.push_back({changed(key).at(1e-6), changed(key).at(-1e-6), 2e-6});
+  const auto rates = pressure_rates(base, neighbours, angles);
+  double largest = 0;
+  for (const double rate : rates[0].chamber) largest = std::max(largest, std::abs(rate));
+  EXPECT_GT(largest, 1e-3 * base.computed->peak);
+  for (std::size_t i = 0; i < angles.size(); ++i)
+    EXPECT_NEAR(rates[0].chamber[i], rates[1].chamber[i] + rates[2].chamber[i], 1e-5 * largest)
+        << angles[i];
+}
 
 // Areas open from 0, so what moves an edge moves nothing at once: no jump there, but a change of
 // slope. Both sides of an edge are 2e-7 deg apart, rates change by their size in a degree or so.

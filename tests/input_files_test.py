@@ -39,6 +39,7 @@ class InputTest(ProgramTest):
             self.assertIn(f"[{table}]\n", text)
             (self.folder / name).write_text(text.replace(f"[{table}]\n", f"[{table}]\n{line}\n", 1))
         with_key("opening_case.toml", "bap63_rated_hydraulic.toml", "hydraulics", f'delivery_opening_file = "{file}"')
+        with_key("stroke_case.toml", "bap63_rated_hydraulic.toml", "hydraulics", f'stroke_file = "{file}"')
         with_key("drive_case.toml", "bap63_start_up.toml", "drive", f'file = "{file}"')
         share = (base.REPO / "cases" / "bap63_load_step.toml").read_text().replace("curves/load_step_share.csv", str(file))
         (self.folder / "share_case.toml").write_text(share.replace("curves/", str(base.REPO / "cases" / "curves") + "/"))
@@ -48,6 +49,7 @@ class InputTest(ProgramTest):
             "case of a reference": ("reference", "new", file, "--from", file),
             "pressure curve": ("run", "curve_case.toml", "--model", "analytic", "--out", "out"),
             "opening": ("show", "opening_case.toml"),
+            "stroke": ("show", "stroke_case.toml"),
             "drive": ("show", "drive_case.toml"),
             "share": ("show", "share_case.toml"),
             "pitch errors": ("show", "pitch_case.toml"),

@@ -572,6 +572,20 @@ TEST(Validate, HydraulicsToo) {
     the_case.hydraulics->suction.table = {"", {0, 100, 200}, {0, 1e-6, 0}};
     return the_case;
   }()));
+  const std::vector<double> four = {0, 90, 180, 270};
+  for (const StrokeTable& table :
+       {StrokeTable{"", {0, 90, 180}, {0, 1, 2}, false}, StrokeTable{"", four, {0, 1, 2}, false},
+        StrokeTable{"", {0, 180, 90, 270}, {0, 1, 2, 1}, false},
+        StrokeTable{"", {0, 90, 180, 360}, {0, 1, 2, 1}, false},
+        StrokeTable{"", four, {1, 1, 1, 1}, false}, StrokeTable{"", four, {0, 1, NAN, 1}, false},
+        StrokeTable{"", four, {0, 1, 2, 1}, true}})
+    EXPECT_THAT(after([&](Case& c) { c.hydraulics->stroke = table; }), HasSubstr("stroke_file"));
+  EXPECT_EQ(after([&](Case& c) {
+              c.hydraulics->stroke = {"", four, {0, 8e-3, 16e-3, 8e-3}, false};
+            }),
+            "accepted");
+  EXPECT_THAT(after([](Case& c) { c.hydraulics->suction.discharge_coefficient = 3; }),
+              HasSubstr("suction_discharge_coefficient = 3: must be in (0, 2]"));
   EXPECT_THAT(after([](Case& c) { c.pressure.ports.delivery = -1; }),
               HasSubstr("delivery_bar = -1e-05: must be in [0, 10000]"));
 }

@@ -192,6 +192,10 @@ class CaseReader {
       *field.opening(result_) = read_opening_table(file);
       return;
     }
+    if (field.stroke != nullptr) {
+      *field.stroke(result_) = read_stroke_table(file);
+      return;
+    }
     if (field.drive != nullptr) {
       DriveSpec& drive = *field.drive(result_);
       drive.curve = read_drive_curve(file, drive.kind);

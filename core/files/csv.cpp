@@ -225,6 +225,27 @@ namespace {
                    ": must be " + range);
 }
 
+// The angle of a row over the turn, after those before it.
+double next_angle(const std::filesystem::path& file, const NumericTable& table, std::size_t row,
+                  const std::vector<double>& before) {
+  const double theta = table.rows[row][0];
+  if (before.empty()) return theta;
+  if (!(theta > before.back()))
+    refuse_value(file, table, row, 0,
+                 "> " + number_text(before.back()) + " (angles increase strictly)");
+  if (!(theta - before.front() < 360))
+    refuse_value(file, table, row, 0,
+                 "< " + number_text(before.front() + 360) +
+                     " (a turn after the first; the end point is not repeated)");
+  return theta;
+}
+
+[[noreturn]] void refuse_count(const std::filesystem::path& file, std::size_t points,
+                               std::size_t fewest) {
+  throw InputError(file.string() + ": has " + std::to_string(points) +
+                   " points, must be at least " + std::to_string(fewest));
+}
+
 }  // namespace
 
 OpeningTable read_opening_table(const std::filesystem::path& file) {
@@ -233,26 +254,39 @@ OpeningTable read_opening_table(const std::filesystem::path& file) {
     throw InputError(file.string() + ":1: header must be theta_deg,area_mm2");
   OpeningTable opening{file, {}, {}};
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const auto refuse = [&](std::size_t column, const std::string& range) {
-      refuse_value(file, table, i, column, range);
-    };
-    const double theta = table.rows[i][0];
-    if (i > 0 && !(theta > opening.theta_deg.back()))
-      refuse(0, "> " + number_text(opening.theta_deg.back()) + " (angles increase strictly)");
-    if (i > 0 && !(theta - opening.theta_deg.front() < 360))
-      refuse(0, "< " + number_text(opening.theta_deg.front() + 360) +
-                    " (a turn after the first; the end point is not repeated)");
-    if (!(table.rows[i][1] >= 0)) refuse(1, ">= 0");
+    const double theta = next_angle(file, table, i, opening.theta_deg);
+    if (!(table.rows[i][1] >= 0)) refuse_value(file, table, i, 1, ">= 0");
     opening.theta_deg.push_back(theta);
     opening.area.push_back(square_metres(table.rows[i][1]));
   }
   constexpr std::size_t kFewestPoints = 3;
-  if (opening.area.size() < kFewestPoints)
-    throw InputError(file.string() + ": has " + std::to_string(opening.area.size()) +
-                     " points, must be at least 3");
+  if (opening.area.size() < kFewestPoints) refuse_count(file, opening.area.size(), kFewestPoints);
   if (*std::max_element(opening.area.begin(), opening.area.end()) == 0)
     throw InputError(file.string() + ": area_mm2 is 0 at every angle: must be > 0 somewhere");
   return opening;
+}
+
+StrokeTable read_stroke_table(const std::filesystem::path& file) {
+  const NumericTable table = read_numeric_csv(file);
+  using Header = std::vector<std::string>;
+  StrokeTable stroke{file, {}, {}, table.header == Header{"theta_deg", "volume_cm3"}};
+  if (!stroke.is_volume && table.header != Header{"theta_deg", "stroke_mm"})
+    throw InputError(file.string() +
+                     ":1: header must be theta_deg,stroke_mm or theta_deg,volume_cm3");
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const double theta = next_angle(file, table, i, stroke.theta_deg);
+    const double value = table.rows[i][1];
+    if (stroke.is_volume && !(value > 0)) refuse_value(file, table, i, 1, "> 0");
+    stroke.theta_deg.push_back(theta);
+    stroke.value.push_back(stroke.is_volume ? value / 1e6 : metres(value));
+  }
+  constexpr std::size_t kFewestPoints = 4;
+  if (stroke.value.size() < kFewestPoints) refuse_count(file, stroke.value.size(), kFewestPoints);
+  const auto [least, greatest] = std::minmax_element(stroke.value.begin(), stroke.value.end());
+  if (*least == *greatest)
+    throw InputError(file.string() + ": " + table.header[1] +
+                     " is the same at every angle: the pistons have no stroke");
+  return stroke;
 }
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseLU>
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "bentaxis/pump/error.h"
@@ -42,15 +43,55 @@ PeriodicSpline::PeriodicSpline(const std::vector<double>& angle_deg,
   curvature_.push_back(curvature_.front());
 }
 
+std::size_t PeriodicSpline::piece_at(double at) const {
+  const auto upper = std::upper_bound(x_.begin() + 1, x_.end() - 1, at);
+  return static_cast<std::size_t>(upper - x_.begin()) - 1;
+}
+
 double PeriodicSpline::operator()(double angle_deg) const {
   const double at = x_.front() + wrap_degrees(angle_deg - x_.front());
-  const auto upper = std::upper_bound(x_.begin() + 1, x_.end() - 1, at);
-  const auto i = static_cast<std::size_t>(upper - x_.begin()) - 1;
+  const std::size_t i = piece_at(at);
   const double h = x_[i + 1] - x_[i];
   const double a = (x_[i + 1] - at) / h;
   const double b = (at - x_[i]) / h;
   return a * y_[i] + b * y_[i + 1] +
          (a * (a * a - 1) * curvature_[i] + b * (b * b - 1) * curvature_[i + 1]) * h * h / 6;
+}
+
+double PeriodicSpline::slope_in(std::size_t piece, double at) const {
+  const std::size_t next = piece + 1;
+  const double h = x_[next] - x_[piece];
+  const double a = (x_[next] - at) / h;
+  const double b = (at - x_[piece]) / h;
+  return (y_[next] - y_[piece]) / h +
+         ((3 * b * b - 1) * curvature_[next] - (3 * a * a - 1) * curvature_[piece]) * h / 6;
+}
+
+double PeriodicSpline::slope(double angle_deg) const {
+  const double at = x_.front() + wrap_degrees(angle_deg - x_.front());
+  return slope_in(piece_at(at), at);
+}
+
+PeriodicSpline::Extremes PeriodicSpline::extremes() const {
+  Extremes found{y_.front(), y_.front()};
+  const auto meet = [&](double value) {
+    found.least = std::min(found.least, value);
+    found.greatest = std::max(found.greatest, value);
+  };
+  for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
+    meet(y_[i]);
+    // The slope is quadratic in t = at - x_i: first + curvature t + bend t^2.
+    const double h = x_[i + 1] - x_[i];
+    const double first = slope_in(i, x_[i]);
+    const double bend = (curvature_[i + 1] - curvature_[i]) / (2 * h);
+    const double discriminant = curvature_[i] * curvature_[i] - 4 * bend * first;
+    if (!(discriminant >= 0)) continue;
+    // Both roots without a difference of nearly equal numbers.
+    const double q = -(curvature_[i] + std::copysign(std::sqrt(discriminant), curvature_[i])) / 2;
+    for (const double t : {q / bend, first / q})
+      if (t > 0 && t < h) meet((*this)(x_[i] + t));
+  }
+  return found;
 }
 
 }  // namespace bentaxis

@@ -66,6 +66,17 @@ std::string agreement_text(const LifeStudy& s) {
       s.agrees() ? "agree" : "differ", s.models_apart(), kLifeModelsAgree);
 }
 
+// What is known of a ball bearing ball by ball, by both models.
+std::string balls_text(const LifeStudy& s, Bearing bearing) {
+  const BearingLife& life = s.analytic.life.of(bearing);
+  return fmt::format(
+      "L10r {} million revolutions, {} (by Simbody {}) after ISO/TS 16281; largest radial "
+      "deflection {:.4g} um, largest ball load {:.4g} N",
+      digits(life.reference_revolutions), hours_text(life.reference_hours),
+      hours_text(s.multibody.life.of(bearing).reference_hours), life.deflection * 1e6,
+      life.largest_ball_load);
+}
+
 report::Section bearings_section(const LifeStudy& s) {
   report::Section section{
       "Bearings",
@@ -83,6 +94,8 @@ report::Section bearings_section(const LifeStudy& s) {
   for (const Bearing bearing : study::kBearings) {
     const BearingRating& rating = rating_of(s.the_case, bearing);
     const BearingLife& life = s.analytic.life.of(bearing);
+    if (is_computed(life.reference_revolutions))
+      section.facts.emplace_back(name_of(s.the_case, bearing), balls_text(s, bearing));
     section.table.rows.push_back(
         {name_of(s.the_case, bearing), rating.dynamic_rating, rating.static_rating, life.mean_load,
          s.multibody.life.of(bearing).mean_load, rating.dynamic_rating / life.mean_load,
@@ -92,9 +105,10 @@ report::Section bearings_section(const LifeStudy& s) {
 }
 
 // Mean equivalent load of one row.
-double load_of(const LifePoint& point, Bearing bearing) {
+double load_of(const Case& the_case, const LifePoint& point, Bearing bearing) {
   const auto& loads = point.loads[static_cast<std::size_t>(bearing)].equivalent;
-  return study::mean_load(loads, std::vector<double>(loads.size(), 1.0));
+  return study::mean_load(loads, std::vector<double>(loads.size(), 1.0),
+                          study::law_of(rating_of(the_case, bearing).element).life_exponent);
 }
 
 report::Section duty_section(const LifeStudy& s) {
@@ -118,7 +132,7 @@ report::Section duty_section(const LifeStudy& s) {
     for (std::size_t i = 0; i < s.duty.variables.size(); ++i)
       cells.emplace_back(s.duty.variables[i].text(s.duty.rows[row].values[i]));
     for (const Bearing bearing : study::kBearings) {
-      cells.emplace_back(load_of(s.analytic.points[row], bearing));
+      cells.emplace_back(load_of(s.the_case, s.analytic.points[row], bearing));
       cells.emplace_back(100 * s.analytic.life.of(bearing).life_share[row]);
     }
     section.table.rows.push_back(std::move(cells));
@@ -273,8 +287,8 @@ std::string life_csv(const LifeStudy& s) {
   for (std::size_t row = 0; row < s.duty.rows.size(); ++row) {
     std::vector<double> loads;
     for (const Bearing bearing : study::kBearings)
-      loads.insert(loads.end(), {load_of(s.analytic.points[row], bearing),
-                                 load_of(s.multibody.points[row], bearing),
+      loads.insert(loads.end(), {load_of(s.the_case, s.analytic.points[row], bearing),
+                                 load_of(s.the_case, s.multibody.points[row], bearing),
                                  s.analytic.life.of(bearing).life_share[row]});
     csv.row(s.duty.rows[row].number, shares.time[row], shares.revolutions[row],
             s.duty.rows[row].values, loads, no_reason);
@@ -315,6 +329,9 @@ std::string life_text(const LifeStudy& s) {
                         rating.static_rating / 1e3, digits(life.mean_load / 1e3),
                         digits(life.revolutions), digits(life.hours), life.static_safety);
   }
+  for (const Bearing bearing : study::kBearings)
+    if (is_computed(s.analytic.life.of(bearing).reference_revolutions))
+      text += name_of(s.the_case, bearing) + ": " + balls_text(s, bearing) + "\n";
   if (s.duty.rows.size() > 1) {
     const study::DutyShares shares = study::duty_shares(s.analytic.points);
     text += fmt::format("\n{:>7} {:>7} {:>10} {:>12}  of time, revolutions, life used up, %\n",

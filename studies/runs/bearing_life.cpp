@@ -4,8 +4,10 @@
 #include <cmath>
 #include <functional>
 
+#include "bentaxis/numerics/bisection.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/study/ball_bearing.h"
 
 namespace bentaxis::study {
 namespace {
@@ -44,31 +46,68 @@ double hours(double revolutions, double mean_speed_rpm) {
                             : not_computed();
 }
 
+double mean_of(const std::vector<double>& loads, const RollingLaw& law) {
+  return mean_load(loads, std::vector<double>(loads.size(), 1.0), law.life_exponent);
+}
+
+// Ball by ball at every angle of every point: lives add up as Miner's rule has it.
+void add_reference_life(Bearing bearing, const BearingRating& rating,
+                        const std::vector<LifePoint>& points, const std::vector<double>& shares,
+                        double mean_speed_rpm, BearingLife& life) {
+  if (!rating.balls) return;
+  const BallGeometry& g = *rating.balls;
+  const BallBearing balls{g.balls,
+                          g.ball_diameter,
+                          g.pitch_diameter,
+                          g.inner_groove_ratio,
+                          g.outer_groove_ratio,
+                          g.radial_clearance,
+                          rating.dynamic_rating};
+  double used = 0;
+  life.deflection = life.largest_ball_load = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const BearingLoads& loads = points[i].loads[static_cast<std::size_t>(bearing)];
+    const double each = shares[i] / static_cast<double>(loads.radial.size());
+    for (std::size_t k = 0; k < loads.radial.size(); ++k) {
+      if (loads.radial[k] == 0 && loads.axial[k] == 0) continue;
+      const BallBearingState at = equilibrium(balls, {loads.radial[k], std::abs(loads.axial[k])});
+      used += each / at.reference_life;
+      life.deflection = std::max(life.deflection, std::abs(at.radial));
+      life.largest_ball_load = std::max(
+          life.largest_ball_load, *std::max_element(at.ball_loads.begin(), at.ball_loads.end()));
+    }
+  }
+  if (!(used > 0)) return;
+  life.reference_revolutions = 1 / used;
+  life.reference_hours = hours(life.reference_revolutions, mean_speed_rpm);
+}
+
 BearingLife life_of(Bearing bearing, const BearingRating& rating,
                     const std::vector<LifePoint>& points, const std::vector<double>& shares,
                     double mean_speed_rpm) {
   BearingLife life;
+  const RollingLaw law = law_of(rating.element);
   std::vector<double> of_point;
   double largest0 = 0;
   for (const LifePoint& p : points) {
     const BearingLoads& loads = p.loads[static_cast<std::size_t>(bearing)];
-    of_point.push_back(
-        mean_load(loads.equivalent, std::vector<double>(loads.equivalent.size(), 1.0)));
+    of_point.push_back(mean_of(loads.equivalent, law));
     largest0 =
         std::max(largest0, *std::max_element(loads.equivalent0.begin(), loads.equivalent0.end()));
   }
   life.static_safety = largest0 > 0 ? rating.static_rating / largest0 : not_computed();
+  add_reference_life(bearing, rating, points, shares, mean_speed_rpm, life);
   if (mean_speed_rpm == 0) {
     life.mean_load = life.revolutions = life.hours = not_computed();
     life.life_share.assign(points.size(), not_computed());
     return life;
   }
-  life.mean_load = mean_load(of_point, shares);
-  life.revolutions = rating_life(rating.dynamic_rating, life.mean_load);
+  life.mean_load = mean_load(of_point, shares, law.life_exponent);
+  life.revolutions = rating_life(rating.dynamic_rating, life.mean_load, law.life_exponent);
   life.hours = hours(life.revolutions, mean_speed_rpm);
   double all = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    life.life_share.push_back(shares[i] * std::pow(of_point[i], kLifeExponent));
+    life.life_share.push_back(shares[i] * std::pow(of_point[i], law.life_exponent));
     all += life.life_share.back();
   }
   for (double& share : life.life_share) share = all > 0 ? share / all : not_computed();
@@ -104,24 +143,36 @@ std::vector<LifeLimit> limits_of(const BearingRatings& b, const std::vector<Life
   const OfAngle axial = [](const BearingLoads& l, std::size_t k) { return l.axial[k]; };
   const OfAngle load = [](const BearingLoads& l, std::size_t k) { return l.equivalent[k]; };
   const OfAngle load0 = [](const BearingLoads& l, std::size_t k) { return l.equivalent0[k]; };
-  scan({Bearing::tapered, "pulled", "thrust seats the tapered bearing: Rb1_z1 >= 0",
-        "it takes thrust in one direction only; its life is computed from the magnitude and is not "
-        "meaningful there"},
-       axial, axial);
+  // A ball bearing takes thrust both ways unless its contact is angular, which the case does not
+  // say.
+  if (b.tapered->element == RollingElement::roller)
+    scan({Bearing::tapered, "pulled", "thrust seats the tapered bearing: Rb1_z1 >= 0",
+          "it takes thrust in one direction only; its life is computed from the magnitude and is "
+          "not "
+          "meaningful there"},
+         axial, axial);
   const double per_radial = 1 / (2 * b.tapered->axial_factor);
-  scan(
-      {Bearing::tapered, "seated", "thrust exceeds the induced thrust of the taper: Fa >= Fr/(2Y)",
-       "without an opposed bearing fewer than half of the rollers carry load; P is too small "
-       "there"},
-      [&](const BearingLoads& l, std::size_t k) { return l.axial[k] - per_radial * l.radial[k]; },
-      axial);
+  const bool tapered = b.tapered->element == RollingElement::roller;
+  if (tapered)
+    scan(
+        {Bearing::tapered, "seated",
+         "thrust exceeds the induced thrust of the taper: Fa >= Fr/(2Y)",
+         "without an opposed bearing fewer than half of the rollers carry load; P is too small "
+         "there"},
+        [&](const BearingLoads& l, std::size_t k) { return l.axial[k] - per_radial * l.radial[k]; },
+        axial);
   for (const Bearing bearing : kBearings) {
     const BearingRating& rating = rating_of(b, bearing);
+    const bool balls = rating.element == RollingElement::ball;
+    const double smallest = law_of(rating.element).smallest_load;
     scan(
-        {bearing, "smallest", "load enough for the rollers to roll: P >= 0.02 C",
-         "rollers may slide: wear that the rating life does not include"},
+        {bearing, "smallest",
+         balls ? "load enough for the balls to roll: P >= 0.01 C"
+               : "load enough for the rollers to roll: P >= 0.02 C",
+         std::string(balls ? "balls" : "rollers") +
+             " may slide: wear that the rating life does not include"},
         [&](const BearingLoads& l, std::size_t k) {
-          return l.equivalent[k] - kSmallestLoad * rating.dynamic_rating;
+          return l.equivalent[k] - smallest * rating.dynamic_rating;
         },
         load);
     scan(
@@ -154,17 +205,23 @@ double equivalent_static_load(const TaperedRating& rating, double radial, double
   return std::max(radial, radial / 2 + rating.static_axial_factor * std::abs(axial));
 }
 
-double mean_load(std::span<const double> loads, std::span<const double> shares) {
+RollingLaw law_of(RollingElement element) {
+  return element == RollingElement::roller
+             ? RollingLaw{}
+             : RollingLaw{kBallLifeExponent, kBallWeibullSlope, kSmallestBallLoad};
+}
+
+double mean_load(std::span<const double> loads, std::span<const double> shares, double exponent) {
   // Over the largest, so that no power and no sum leaves the range of numbers.
   double largest = 0, most = 0, sum = 0, all = 0;
   for (const double load : loads) largest = std::max(largest, load);
   for (const double share : shares) most = std::max(most, share);
   if (largest == 0 || most == 0) return 0;
   for (std::size_t i = 0; i < loads.size(); ++i) {
-    sum += shares[i] / most * std::pow(loads[i] / largest, kLifeExponent);
+    sum += shares[i] / most * std::pow(loads[i] / largest, exponent);
     all += shares[i] / most;
   }
-  return largest * std::pow(sum / all, 1 / kLifeExponent);
+  return largest * std::pow(sum / all, 1 / exponent);
 }
 
 double rating_life(double dynamic_rating, double load, double exponent) {
@@ -178,6 +235,26 @@ double combined_life(std::span<const double> lives) {
     sum += std::pow(life, -kWeibullSlope);
   }
   return std::pow(sum, -1 / kWeibullSlope);
+}
+
+double combined_life(std::span<const double> lives, std::span<const double> slopes) {
+  double shortest = HUGE_VAL;
+  bool rollers = true;
+  for (std::size_t i = 0; i < lives.size(); ++i) {
+    if (!is_computed(lives[i])) return not_computed();
+    shortest = std::min(shortest, lives[i]);
+    rollers = rollers && slopes[i] == kWeibullSlope;
+  }
+  if (rollers) return combined_life(lives);
+  // Over the shortest life: the sum is 1 or more at 1 and grows with the life.
+  constexpr int kHalvings = 60;
+  const auto too_long = [&](double life) {
+    double sum = 0;
+    for (std::size_t i = 0; i < lives.size(); ++i)
+      sum += std::pow(life * (shortest / lives[i]), slopes[i]);
+    return sum >= 1;
+  };
+  return shortest * numerics::bisect({0, 1}, kHalvings, too_long).middle();
 }
 
 std::string to_string(Bearing bearing) {
@@ -225,14 +302,15 @@ PumpLife pump_life(const Case& the_case, const std::vector<LifePoint>& points) {
   PumpLife life;
   for (std::size_t i = 0; i < points.size(); ++i)
     life.mean_speed_rpm += shares.time[i] * std::abs(points[i].speed_rpm);
-  std::array<double, 2> lives{};
+  std::array<double, 2> lives{}, slopes{};
   for (const Bearing bearing : kBearings) {
     const auto i = static_cast<std::size_t>(bearing);
     life.bearings[i] =
         life_of(bearing, rating_of(b, bearing), points, revolutions, life.mean_speed_rpm);
     lives[i] = life.bearings[i].revolutions;
+    slopes[i] = law_of(rating_of(b, bearing).element).weibull_slope;
   }
-  life.revolutions = combined_life(lives);
+  life.revolutions = combined_life(lives, slopes);
   life.hours = hours(life.revolutions, life.mean_speed_rpm);
   life.limits = limits_of(b, points, revolutions);
   return life;

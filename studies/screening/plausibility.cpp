@@ -12,6 +12,7 @@
 #include "bentaxis/analytic/validity.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/periodic_spline.h"
 #include "bentaxis/pump/registry.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/samples.h"
@@ -648,6 +649,30 @@ const Check kChecks[] = {
            "{:.4g}: two bearings do not fit",
            mm(apart), mm(f.g.joint_circle_radius));
      }},
+    {"ball-bearing",
+     "balls of a ball bearing that overlap, or fill less than a quarter of their circle",
+     [](const Facts& f) {
+       const BearingRatings& b = f.the_case.ratings;
+       return (b.tapered && b.tapered->balls) || (b.cylindrical && b.cylindrical->balls);
+     },
+     [](const Facts& f) {
+       const auto one = [](const char* bearing, const auto& rating) -> std::string {
+         if (!rating || !rating->balls) return "";
+         const BallGeometry& balls = *rating->balls;
+         const double filled =
+             balls.balls * std::asin(std::min(1.0, balls.ball_diameter / balls.pitch_diameter)) /
+             kPi;
+         if (filled >= 0.25 && filled <= 1) return "";
+         return fmt::format(
+             "{0}_balls = {1}, {0}_ball_diameter_mm = {2:.4g}, {0}_ball_pitch_diameter_mm = "
+             "{3:.4g}: "
+             "the balls fill {4:.3g} % of their circle; 40 to 80 are usual, and above 100 they "
+             "overlap",
+             bearing, balls.balls, mm(balls.ball_diameter), mm(balls.pitch_diameter), 100 * filled);
+       };
+       const BearingRatings& b = f.the_case.ratings;
+       return first_of({one("tapered", b.tapered), one("cylindrical", b.cylindrical)});
+     }},
     {"bearing-far", "the nearer bearing farther than 5 Ra or the other farther than 10 Ra",
      [](const Facts& f) {
        const Bearings& b = f.pump.bearings;
@@ -1143,7 +1168,13 @@ const Check kChecks[] = {
        return first_of(
            {one("delivery", f.oil->delivery.notch), one("suction", f.oil->suction.notch)});
      }},
-    {"discharge-coefficient", "Cd outside {0:g} .. {1:g}", "hydraulics", "discharge_coefficient"},
+    {"discharge-coefficient", "Cd outside {0:g} .. {1:g}", "hydraulics", "discharge_coefficient",
+     always,
+     [](const Facts& f) {
+       return first_of({implausible(f, "hydraulics", "discharge_coefficient"),
+                        implausible(f, "hydraulics", "delivery_discharge_coefficient"),
+                        implausible(f, "hydraulics", "suction_discharge_coefficient")});
+     }},
     {"transition-pressure", "p_cr above 5 bar and a twentieth of the delivery pressure", has_oil,
      [](const Facts& f) {
        return outside(
@@ -1169,6 +1200,17 @@ const Check kChecks[] = {
            f, "hydraulics", "dead_volume_cm3", 0.03 * stroke, 5 * stroke,
            fmt::format("a stroke displaces {:.4g} cm3", stroke),
            {{1e-3, "in mm3?"}, {1e3, "in litres?"}, {1e6, "in m3?"}, kTenfold, kHundredth});
+     }},
+    {"stroke-file", "the oil follows `stroke_file`, the forces the pump's own geometry",
+     [](const Facts& f) { return f.oil != nullptr && !f.oil->stroke.theta_deg.empty(); },
+     [](const Facts& f) {
+       const StrokeTable& stroke = f.oil->stroke;
+       const auto [least, greatest] = PeriodicSpline(stroke.theta_deg, stroke.value).extremes();
+       const double displaced = (greatest - least) * (stroke.is_volume ? 1 : f.area);
+       return fmt::format(
+           "stroke_file: the oil's chambers displace {:.4g} cm3 per stroke by this file; forces, "
+           "torque and efficiency are of pistons that displace {:.4g} cm3 by the pump's geometry",
+           displaced * 1e6, f.area * f.derived.stroke * 1e6);
      }},
     {"delivery-volume", "delivery volume below 0.05 or above 1000 times the displacement",
      has_stroke_and_oil,

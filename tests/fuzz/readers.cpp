@@ -152,6 +152,14 @@ void read_as_curve(const std::uint8_t* data, std::size_t size) {
     check_message(error);
   }
   try {
+    const StrokeTable stroke = read_stroke_table(file_with(data, size));
+    require(stroke.value.size() >= 4 && stroke.value.size() == stroke.theta_deg.size(),
+            "stroke has too few points");
+    for (const double value : stroke.value) require(std::isfinite(value), "stroke is not finite");
+  } catch (const InputError& error) {
+    check_message(error);
+  }
+  try {
     PressureSpec spec;
     spec.kind = PressureKind::curve;
     spec.file = file_with(data, size);

@@ -1,5 +1,6 @@
 // [hydraulics]: oil, ports, leakage and delivery line.
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "tables/entries.h"
@@ -13,6 +14,9 @@ constexpr double kKidneyRounding = 5;
 constexpr double kSteepestModulus = 20;
 
 const When kAirTakesTime{"hydraulics", "cavitation", {"rate"}};
+const When kDissolvingAir{"hydraulics", "oil_law", {"dissolving_air"}};
+const When kDowsonHigginson{"hydraulics", "oil_law", {"dowson_higginson"}};
+const When kConstantDensity{"hydraulics", "oil_law", {"constant_density"}};
 
 const Part kHydraulicData = [] {
   Part part = part_at([](auto& c) { return &c.hydraulics; }, kHydraulic);
@@ -89,6 +93,46 @@ std::string table_refusal(const OpeningTable& table) {
   return "";
 }
 
+std::string stroke_refusal(const StrokeTable& table) {
+  const auto& angles = table.theta_deg;
+  const auto& values = table.value;
+  if (angles.empty() && values.empty()) return "";
+  constexpr std::size_t kFewest = 4;
+  if (angles.size() < kFewest || angles.size() != values.size())
+    return "must have at least 4 points";
+  if (std::adjacent_find(angles.begin(), angles.end(), std::greater_equal<>()) != angles.end() ||
+      !(angles.back() - angles.front() < 360))
+    return "theta_deg must increase strictly and span less than 360 deg";
+  const auto outside = [&](double value) {
+    return !(std::abs(value) < kInfinity && (value > 0 || !table.is_volume));
+  };
+  if (std::any_of(values.begin(), values.end(), outside))
+    return table.is_volume ? "volume_cm3 must be > 0" : "stroke_mm must be finite";
+  const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
+  return *least < *greatest ? "" : "must have a stroke";
+}
+
+std::string law_refusal(const Case& c) {
+  const HydraulicData& data = *c.hydraulics;
+  const bool air_stays =
+      data.oil_law == OilLaw::entrained_air || data.oil_law == OilLaw::dowson_higginson;
+  return air_stays || data.cavitation == Cavitation::ignored
+             ? ""
+             : "must be \"entrained_air\" or \"dowson_higginson\" where cavitation is not "
+               "\"ignored\"";
+}
+
+std::string lowest_pressure_refusal(const Case& c) {
+  const HydraulicData& data = *c.hydraulics;
+  if (c.pressure.kind != PressureKind::hydraulic || data.oil_law != OilLaw::constant_density)
+    return "";
+  const double least = data.atmosphere + std::min(c.pressure.ports.suction, data.case_pressure);
+  return data.lowest_pressure < least
+             ? ""
+             : "must be < " + short_text(least / kPascalPerBar) +
+                   ", the smaller absolute pressure of suction port and case";
+}
+
 std::string boiling_refusal(const Case& c) {
   const HydraulicData& data = *c.hydraulics;
   if (c.pressure.kind != PressureKind::hydraulic || data.cavitation == Cavitation::ignored)
@@ -105,6 +149,22 @@ std::string vacuum_refusal(const Case& c) {
   return c.pressure.ports.suction > -c.hydraulics->atmosphere
              ? ""
              : "must exceed -suction_bar of [pressure]: an absolute pressure cannot be negative";
+}
+
+// The discharge coefficient of a port, where it has one of its own.
+template <auto kPort>
+const Part kDischarge = part_at([](auto& c) {
+  return c.hydraulics ? &((*c.hydraulics).*kPort).discharge_coefficient : nullptr;
+});
+
+template <auto kPort>
+Parameter discharge_parameter(const std::string& name) {
+  return number(name + "_discharge_coefficient", "",
+                FIELD((*c.hydraulics.*kPort).discharge_coefficient), kNoUnit, {0, 2, true},
+                {.words = "`discharge_coefficient`"}, "of the openings of the " + name + " port",
+                {.practice = "0.6..0.8",
+                 .part = &kDischarge<kPort>,
+                 .plausible = {0.3, 1, "edges have 0.6 to 0.7, a nozzle 1", {slips::kTenfold}}});
 }
 
 // What opens one port of [hydraulics]. `kPlateArc`: that of [port_plate].
@@ -196,7 +256,16 @@ Table hydraulics_table() {
       .meaning = "oil, ports, leakage and delivery line",
       .part = &kHydraulicData,
       .parameters = joined<Parameter>(
-          {{number("density_kg_per_m3", "rho0", FIELD(c.hydraulics->density), {"kg/m3"},
+          {{choice("oil_law", FIELD(c.hydraulics->oil_law),
+                   {"entrained_air", "dissolving_air", "dowson_higginson", "constant_density"},
+                   "entrained_air",
+                   "how volume and density follow from the pressure: entrained_air (K, K', air "
+                   "that stays), "
+                   "dissolving_air (likewise, air dissolves up to `air_dissolved_bar`), "
+                   "dowson_higginson (mineral oil, air that stays), constant_density (rho0 "
+                   "everywhere, "
+                   "K)"),
+            number("density_kg_per_m3", "rho0", FIELD(c.hydraulics->density), {"kg/m3"},
                    {100, 5000}, {850.0}, "oil without air at P0",
                    {.practice = "mineral oil at 60 deg C: 840..870",
                     .plausible = {600,
@@ -241,6 +310,26 @@ Table hydraulics_table() {
                     },
                     .range_words = "[0, 20], at most 0.9 K/P0",
                     .practice = "mineral oil: 9..12"}),
+            number("air_dissolved_bar", "P_c", FIELD(c.hydraulics->dissolved_pressure), kBar,
+                   {0, 10000, true}, {30.0},
+                   "gauge pressure from which on all entrained air is dissolved",
+                   {.practice = "10..100", .active = kDissolvingAir}),
+            number(
+                "compressibility_per_GPa", "", FIELD(c.hydraulics->compressibility), kPerGigapascal,
+                {0, 100, true}, {0.6},
+                "a of rho = rho0 (1 + a p/(1 + b p)), p above P0: compressibility there, in place "
+                "of 1/K",
+                {.practice = "mineral oil: 0.6", .active = kDowsonHigginson}),
+            number("compressibility_decrease_per_GPa", "",
+                   FIELD(c.hydraulics->compressibility_decrease), kPerGigapascal, {0, 1000}, {1.7},
+                   "b of the same law: how the compressibility decreases with pressure",
+                   {.practice = "mineral oil: 1.7", .active = kDowsonHigginson}),
+            number("lowest_pressure_bar", "P_min", FIELD(c.hydraulics->lowest_pressure), kBar,
+                   {1e-8, 1}, {1e-4},
+                   "absolute pressure below which none falls, however little oil is there",
+                   {.range_words = "[1e-8, 1], below suction and case",
+                    .practice = "regularisation",
+                    .active = kConstantDensity}),
             choice("cavitation", FIELD(c.hydraulics->cavitation),
                    {"ignored", "equilibrium", "rate"}, "ignored",
                    "ignored: entrained air only; equilibrium: dissolved air is released by Henry's "
@@ -313,6 +402,8 @@ Table hydraulics_table() {
                    kNoUnit, {0, 2, true}, {0.67}, "of every opening",
                    {.practice = "0.6..0.7",
                     .plausible = {0.3, 1, "edges have 0.6 to 0.7, a nozzle 1", {slips::kTenfold}}}),
+            discharge_parameter<&HydraulicData::delivery>("delivery"),
+            discharge_parameter<&HydraulicData::suction>("suction"),
             number("transition_pressure_bar", "p_cr", FIELD(c.hydraulics->transition_pressure),
                    kBar, kPositive, {0.1},
                    "below it the orifice flow is about linear in the pressure difference",
@@ -332,8 +423,16 @@ Table hydraulics_table() {
                                   "shaft seals bear a few bar",
                                   {slips::kPascals, slips::kKilopascals, slips::kTenth}}}),
             number("dead_volume_cm3", "V0", FIELD(c.hydraulics->dead_volume), kCubicCentimetres,
-                   kPositive, {3.0}, "smallest volume of a chamber",
+                   kPositive, {3.0},
+                   "smallest volume of a chamber; unused where `stroke_file` has volumes",
                    {.practice = "about a quarter of the stroke's 12.7 cm3"}),
+            text("stroke_file",
+                 curve_at(PLACE(c.hydraulics->stroke.file),
+                          {.stroke = [](Case& c) { return &c.hydraulics->stroke; }}),
+                 "CSV `theta_deg,stroke_mm` or `theta_deg,volume_cm3`, path relative to the case "
+                 "file: how far a piston is out of its bore, from any zero, or the volume of a "
+                 "chamber, over the chamber's angle. The oil's chambers follow it in place of the "
+                 "pump's geometry; the forces do not. Empty: none"),
             number("delivery_volume_l", "", FIELD(c.hydraulics->delivery_volume), kLitres,
                    kPositive, {0.5}, "between pump and load, or delivery line"),
             number("tolerance", "", FIELD(c.hydraulics->tolerance), kNoUnit, {1e-12, 1e-4}, {1e-10},
@@ -351,6 +450,10 @@ Table hydraulics_table() {
             after("suction_arc_deg",
                   [](const Case& c) { return arc_refusal(c.hydraulics->suction.arc); }),
             after("kidney_width_deg", kidney_refusal), at_end("kidney_ends", ends_refusal),
+            at_end("oil_law", law_refusal),
+            at_end("stroke_file",
+                   [](const Case& c) { return stroke_refusal(c.hydraulics->stroke); }),
+            at_end("lowest_pressure_bar", lowest_pressure_refusal),
             at_end("atmosphere_bar", vacuum_refusal), at_end("vapour_bar", boiling_refusal)}})};
 }
 

@@ -45,6 +45,11 @@ PressureCurve read_pressure_curve(const std::filesystem::path& file);
 /// @throws InputError naming file and line.
 OpeningTable read_opening_table(const std::filesystem::path& file);
 
+/// Reads the stroke of a piston: CSV with the header theta_deg,stroke_mm or theta_deg,volume_cm3,
+/// over the chamber's angle.
+/// @throws InputError naming file and line.
+StrokeTable read_stroke_table(const std::filesystem::path& file);
+
 /// Reads what drives a shaft over time: CSV with the header time_s,speed_rpm or, for a torque,
 /// time_s,torque_Nm.
 /// @throws InputError naming file and line.

@@ -47,6 +47,16 @@ struct OpeningTable {
   std::vector<double> area;
 };
 
+/// Stroke of a piston, or volume of a chamber, as a table over the chamber's own angle: the oil's
+/// chambers follow it in place of the pump's kinematics. Angles as in OpeningTable.
+struct StrokeTable {
+  std::filesystem::path file;
+  std::vector<double> theta_deg;  ///< empty: no table; else at least 4
+  /// m, how far the piston is out of its bore, from any zero; or m3, volume of a chamber.
+  std::vector<double> value;
+  bool is_volume = false;
+};
+
 /// One port of the fixed plate as the kidneys of the block see it.
 struct PlatePort {
   PortArc arc;                ///< degrees; psi as in PortArc
@@ -55,6 +65,7 @@ struct PlatePort {
   ReliefGroove groove = {};
   std::array<PlateHole, 2> holes = {};
   OpeningTable table = {};
+  std::optional<double> discharge_coefficient = {};  ///< of its openings; none: the common one
 };
 
 /// Ends of the block's kidneys and, where they are circular, of the ports.
@@ -68,6 +79,14 @@ enum class Cavitation {
   ignored,      ///< entrained air alone: none dissolves or comes out, no vapour
   equilibrium,  ///< dissolved air comes out by Henry's law; bubbles hold saturated vapour
   rate,         ///< likewise, but what is out follows that equilibrium with time constants
+};
+
+/// How volume and density of the oil follow from its pressure.
+enum class OilLaw {
+  entrained_air,     ///< a constant or linearly growing bulk modulus, and entrained air that stays
+  dissolving_air,    ///< the same, but the air dissolves as the pressure rises
+  dowson_higginson,  ///< density of a mineral oil by Dowson and Higginson, and entrained air
+  constant_density,  ///< one density in every flow and balance, with a constant bulk modulus
 };
 
 /// What the pump delivers against. Size: what is given, or sought so that the mean delivery
@@ -162,6 +181,7 @@ struct GapData {
 /// `[pressure]` and of the case are gauge.
 struct HydraulicData {
   // Oil with entrained air.
+  OilLaw oil_law = OilLaw::entrained_air;
   double density = 0;             ///< kg/m3, of the oil without air at atmospheric pressure
   double bulk_modulus = 0;        ///< Pa, of the oil without air, isentropic
   double air_share = 0;           ///< volume of air / volume of both at atmospheric pressure, > 0
@@ -174,6 +194,10 @@ struct HydraulicData {
   double vapour_pressure = 0;      ///< Pa absolute, of the oil
   // Of Cavitation::rate, s.
   double release_time = 0.01, dissolution_time = 0.1;
+  double dissolved_pressure = 30e5;  ///< Pa gauge: from there on OilLaw::dissolving_air has no air
+  /// 1/Pa, a and b of OilLaw::dowson_higginson.
+  double compressibility = 0.6e-9, compressibility_decrease = 1.7e-9;
+  double lowest_pressure = 10;  ///< Pa absolute, of OilLaw::constant_density
   // Flow between the kidney of a chamber (in the block) and the ports of the plate.
   PlatePort delivery, suction;
   double kidney_width_deg = 0;  ///< of a block kidney, seen from the block axis
@@ -187,6 +211,7 @@ struct HydraulicData {
   double leakage = 0;            ///< m3/(s Pa), each chamber to the case, laminar
   double case_pressure = 0;      ///< Pa gauge
   double dead_volume = 0;        ///< V0, m3: smallest volume of a chamber
+  StrokeTable stroke = {};       ///< in place of the pump's kinematics
   double delivery_volume = 0;    ///< m3, between pump and load
   std::optional<LoadData> load;  ///< an orifice where there is none
   std::optional<DeliveryLineData> delivery_line;

@@ -49,12 +49,13 @@ struct ChoiceField {
 struct PairField {
   Access<double> first, second;
 };
-/// A CSV file with the points of a curve, relative to the case file: the opening of a port, what
-/// drives the shaft over time, the share of a load over time, pitch errors of teeth, or where all
-/// are null the chamber pressure. An empty name: none.
+/// A CSV file with the points of a curve, relative to the case file: the opening of a port, the
+/// stroke of a piston, what drives the shaft over time, the share of a load over time, pitch errors
+/// of teeth, or where all are null the chamber pressure. An empty name: none.
 struct CurveField {
   Access<std::filesystem::path> file = {};
   OpeningTable* (*opening)(Case&) = nullptr;
+  StrokeTable* (*stroke)(Case&) = nullptr;
   DriveSpec* (*drive)(Case&) = nullptr;
   TimeCurve* (*share)(Case&) = nullptr;
   ToothData* (*teeth)(Case&) = nullptr;

@@ -19,12 +19,24 @@ inline constexpr double kLifeExponent = 10.0 / 3;
 inline constexpr double kBallLifeExponent = 3;
 /// Of roller bearings: slope of the Weibull distribution of their lives (Lundberg & Palmgren 1952).
 inline constexpr double kWeibullSlope = 9.0 / 8;
+/// Of ball bearings (likewise 1947).
+inline constexpr double kBallWeibullSlope = 10.0 / 9;
 /// ISO 281 holds for loads up to this share of C (and up to C0).
 inline constexpr double kLargestLoad = 0.5;
 /// Smallest load of a roller bearing, of C, at which its rollers roll: the manufacturers' rule.
 inline constexpr double kSmallestLoad = 0.02;
+/// That of a ball bearing.
+inline constexpr double kSmallestBallLoad = 0.01;
 
-/// Equivalent dynamic radial load P, N, of a tapered roller bearing: Fr up to |Fa| = e Fr, else
+/// What the rolling elements decide.
+struct RollingLaw {
+  double life_exponent = kLifeExponent, weibull_slope = kWeibullSlope;
+  double smallest_load = kSmallestLoad;  ///< of C
+};
+RollingLaw law_of(RollingElement element);
+
+/// Equivalent dynamic radial load P, N, of a tapered roller bearing, or of the ball bearing in its
+/// place: Fr up to |Fa| = e Fr, else
 /// X Fr + Y |Fa|.
 /// @param radial  Fr >= 0, N @param axial  Fa, N
 double equivalent_load(const TaperedRating& rating, double radial, double axial);
@@ -32,12 +44,16 @@ double equivalent_load(const TaperedRating& rating, double radial, double axial)
 double equivalent_static_load(const TaperedRating& rating, double radial, double axial);
 /// The constant load that costs as much life as loads P_i over shares q_i of the revolutions:
 /// (sum q P^p / sum q)^(1/p).
-double mean_load(std::span<const double> loads, std::span<const double> shares);
+double mean_load(std::span<const double> loads, std::span<const double> shares,
+                 double exponent = kLifeExponent);
 /// L10 in millions of revolutions; not_computed() without load.
 double rating_life(double dynamic_rating, double load, double exponent = kLifeExponent);
-/// That of bearings of which none may fail: (sum L^-e)^(-1/e), e the Weibull slope; not_computed()
-/// where one is.
+/// That of roller bearings of which none may fail: (sum L^-e)^(-1/e), e the Weibull slope;
+/// not_computed() where one is.
 double combined_life(std::span<const double> lives);
+/// Of bearings each with its own slope: the L at which sum (L/L_i)^e_i = 1, as 10 % of the pumps
+/// have then had a failure. With equal slopes it is the life above.
+double combined_life(std::span<const double> lives, std::span<const double> slopes);
 
 /// The two bearings, as reactions and keys number them.
 enum class Bearing { tapered, cylindrical };
@@ -81,6 +97,11 @@ struct BearingLife {
   double hours = 0;                ///< L10h at the mean speed
   double static_safety = 0;        ///< C0 over the largest P0
   std::vector<double> life_share;  ///< that each point uses up, sums to 1
+  /// Of a ball bearing whose balls are given (ISO/TS 16281); else not_computed().
+  double reference_revolutions = not_computed();  ///< L10r, millions, under the loads of all angles
+  double reference_hours = not_computed();
+  double deflection = not_computed();         ///< m, largest radial one of the inner ring
+  double largest_ball_load = not_computed();  ///< N
 };
 
 /// A limit of what a life may be computed for.
