@@ -50,14 +50,15 @@ struct PairField {
   Access<double> first, second;
 };
 /// A CSV file with the points of a curve, relative to the case file: the opening of a port, what
-/// drives the shaft over time, the share of a load over time, pitch errors of teeth, or where all
-/// are null the chamber pressure. An empty name: none.
+/// drives the shaft over time, the share of a load over time, pitch errors of teeth, deviations of
+/// the pistons' clearances, or where all are null the chamber pressure. An empty name: none.
 struct CurveField {
   Access<std::filesystem::path> file = {};
   OpeningTable* (*opening)(Case&) = nullptr;
   DriveSpec* (*drive)(Case&) = nullptr;
   TimeCurve* (*share)(Case&) = nullptr;
   ToothData* (*teeth)(Case&) = nullptr;
+  WallContact* (*walls)(Case&) = nullptr;
 };
 using Field = std::variant<NumberField, IntegerField, FlagField, TextField, ChoiceField, PairField,
                            CurveField>;
