@@ -58,7 +58,7 @@ Table transfer_table() {
       .parameters =
           {choice("kind", FIELD(c.pump.transfer.kind), transfer_names(), "gear",
                   "the bevel gear of `[gear]`; an ideal constant-velocity joint; one universal "
-                  "joint with its centre in O2; tapered pistons that touch their bores; or two "
+                  "joint in O2; tapered pistons that touch their bores; or two "
                   "universal joints about O2 with a sliding shaft between them (transfer.md)",
                   {.changes_model = true}),
            number("phase_deg", "phi", FIELD(c.pump.transfer.cardan->phase), kAngle, {-180, 180},
