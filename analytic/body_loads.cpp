@@ -189,6 +189,10 @@ void BodyLoads::Implementation::add_transfer(const Instant& instant, const std::
     add(block, "block", "shaft", "Tcs", "about O2", ForceKind::reaction, o2(), kNone, couple);
     add(shaft, "shaft", "block", "Tcs", "about O2", ForceKind::reaction, o2(), kNone,
         -1.0 * couple);
+    if (!at.has(Quantity::Fcs)) return;
+    const Vector force = turned({row[at.Fcs(0)], row[at.Fcs(1)], row[at.Fcs(2)]});
+    add(block, "block", "shaft", "Fcs", "O2", ForceKind::reaction, o2(), force);
+    add(shaft, "shaft", "block", "Fcs", "O2", ForceKind::reaction, o2(), -1.0 * force);
     return;
   }
   if (at.has(Quantity::Tb)) {

@@ -173,7 +173,7 @@ double BudgetModel::Implementation::ratio_of_transfer(const Instant& instant, co
       const double s = state.sine * prepared.phase_cos[k] - state.cosine * prepared.phase_sin[k];
       const double c = state.cosine * prepared.phase_cos[k] + state.sine * prepared.phase_sin[k];
       const auto m = closed_form::piston_motion(p.frame, p.piston, state, s, c);
-      const auto at = closed_form::wall_approach(p.wall, m);
+      const auto at = closed_form::wall_approach(p.wall, m, prepared.clearance(k));
       const double wall = closed_form::wall_force(p.wall, at, state.mode(static_cast<int>(k)));
       closed_form::PistonForces<double> f = {};
       closed_form::add_wall(p.wall, m, wall * at.x, wall * at.y, f, block);
@@ -217,6 +217,7 @@ Budget BudgetModel::Implementation::evaluate(const Instant& instant) {
     budget.carrying_torque = wall_moment;
   } else if (prepared.transfer != TransferKind::gear) {
     budget.carrying_torque = values[at.carrying()];
+    if (at.has(Quantity::Fcs)) budget.pressing += values[at.Fcs(2)];
   } else {
     const double tooth =
         closed_form::Math<double>::direction(instant.shaft.speed) * values[at.Rcs()];

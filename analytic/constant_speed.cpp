@@ -41,11 +41,11 @@ FreePlay free_play_of(const PreparedPump& pump, double theta) {
   const double swing = radius * versine / 2;       // E
   const double offset = p.frame.offset_y;          // beta
   const double bore = p.piston.bore_radius;
-  const double reach = p.wall.clearance / p.wall.share;  // H
   const double sine = std::sin(theta), cosine = std::cos(theta);
   FreePlay play{-1e300, 1e300};
   bool bounded = false, touches = false;
   for (std::size_t k = 0; k < pump.phase_sin.size(); ++k) {
+    const double reach = pump.clearance(k) / p.wall.share;  // H
     const double s = sine_of(pump, sine, cosine, k);
     const double c = cosine_of(pump, sine, cosine, k);
     const double re = mean - swing * (c - s) * (c + s) + offset * c;
@@ -77,6 +77,10 @@ FreePlay free_play_of(const PreparedPump& pump, double theta) {
       share * pump.geometry.joint_circle_radius * (1 - std::cos(pump.geometry.tilt)) / 2;
   throw InputError(
       "[transfer] clearance_mm = " + rounded_text(wall.clearance * 1e3, 6) +
+      (wall.deviation.empty()
+           ? std::string()
+           : " with " + wall.deviation_file.filename().string() + ", smallest clearance " +
+                 rounded_text(wall.smallest_clearance() * 1e3, 6) + " mm") +
       ": the block has no free play at theta = " + rounded_text(theta / kRadPerDegree, 6) +
       " deg: must exceed about (1 - l_c/b1) Ra (1 - cos alpha)/2 = " +
       rounded_text(needed * 1e3, 6) + " mm, and leave a piston that can touch");
@@ -115,7 +119,7 @@ class Balance {
       const double chamber = pressure(lag, k);
       auto f = closed_form::piston_forces(p.piston, m, 1.0, 0.0, friction, chamber);
       if (walls) {
-        const auto at = closed_form::wall_approach(p.wall, m);
+        const auto at = closed_form::wall_approach(p.wall, m, pump_.clearance(k));
         const double wall = closed_form::wall_force(p.wall, at, closed_form::WallMode::by_law);
         closed_form::add_wall(p.wall, m, wall * at.x, wall * at.y, f, load);
       }
@@ -241,7 +245,7 @@ void Model::place_at_constant_speed(Instant& instant, const PressureTrace& press
       instant.chamber_pressure[static_cast<std::size_t>(k)] =
           pressure(piston_angle_deg(psi_deg, k + 1, pistons));
   };
-  if (prepared_->transfer == TransferKind::cardan) {
+  if (pump_.transfer.is_uneven_joint()) {
     instant.block = block_motion(instant.shaft);
     set_pressures(instant.block.angle - instant.shaft.angle);
   } else if (prepared_->transfer == TransferKind::pistons) {

@@ -12,6 +12,7 @@
 #include "closed_form/dual.h"
 #include "closed_form/reactions.h"
 #include "prepared.h"
+#include "turning.h"
 
 namespace bentaxis::analytic {
 namespace {
@@ -114,16 +115,29 @@ void DerivativeModel::joint_couple(const Instant& instant, std::span<const Insta
   if (!layout_.has(Quantity::TcsJoint))
     throw InputError("derivatives: [transfer] kind = \"" + to_string(layout_.transfer()) +
                      "\": must be a joint, which has a couple");
+  vector_from(layout_.TcsJoint(0), instant, rates, values, derivatives);
+}
+
+void DerivativeModel::joint_force(const Instant& instant, std::span<const Instant> rates,
+                                  std::span<double> values, std::span<double> derivatives) const {
+  if (!layout_.has(Quantity::Fcs))
+    throw InputError("derivatives: [transfer] kind = \"" + to_string(layout_.transfer()) +
+                     "\": must be \"double_cardan\", whose joint has a force");
+  vector_from(layout_.Fcs(0), instant, rates, values, derivatives);
+}
+
+void DerivativeModel::vector_from(std::size_t column, const Instant& instant,
+                                  std::span<const Instant> rates, std::span<double> values,
+                                  std::span<double> derivatives) const {
   if (values.size() < 3 || derivatives.size() < 3 * directions_)
     throw InputError("derivatives: space for " + std::to_string(derivatives.size()) +
                      " of them, needed are " + std::to_string(3 * directions_));
-  const std::size_t couple = layout_.TcsJoint(0);
   differentiate(prepared_->pump.common(layout_), instant, rates,
                 [&](std::size_t c, double value, std::span<const double> along, std::size_t first) {
-                  if (c < couple || c > couple + 2) return;
-                  values[c - couple] = value;
+                  if (c < column || c > column + 2) return;
+                  values[c - column] = value;
                   for (std::size_t d = 0; d < along.size(); ++d)
-                    derivatives[(first + d) * 3 + c - couple] = along[d];
+                    derivatives[(first + d) * 3 + c - column] = along[d];
                 });
 }
 
@@ -150,33 +164,27 @@ void DerivativeModel::differentiate(const closed_form::Common& common, const Ins
       return x;
     };
     const Dual theta = number([](const Instant& i) { return i.shaft.angle; });
-    closed_form::CardanState<Dual> state;
-    state.sine = sin(theta);
-    state.cosine = cos(theta);
-    state.omega = number([](const Instant& i) { return i.shaft.speed; });
-    state.omega_dot = number([](const Instant& i) { return i.shaft.acceleration; });
-    state.suction = number([](const Instant& i) { return i.ports.suction; });
-    state.delivery = number([](const Instant& i) { return i.ports.delivery; });
+    const closed_form::State<Dual> shaft = {
+        sin(theta),
+        cos(theta),
+        number([](const Instant& i) { return i.shaft.speed; }),
+        number([](const Instant& i) { return i.shaft.acceleration; }),
+        number([](const Instant& i) { return i.ports.suction; }),
+        number([](const Instant& i) { return i.ports.delivery; })};
     const auto pressure = [&](int k) {
       return number([k](const Instant& i) {
         return i.chamber_pressure.empty() ? 0 : i.chamber_pressure[static_cast<std::size_t>(k)];
       });
     };
-    const auto evaluate = [&](const auto& turning) {
+    with_shaft_state<Dual>(transfer, [&](auto& turning) {
+      static_cast<closed_form::State<Dual>&>(turning) = shaft;
+      closed_form::turn_block(prepared_->numbers[chunk].joint, turning);
       closed_form::reactions<Dual>(common, prepared_->numbers[chunk], turning, true, pressure,
                                    [&](int index, const Dual& value) {
                                      put(static_cast<std::size_t>(index), value.value,
                                          std::span<const double>(&value.rate[0], count), first);
                                    });
-    };
-    if (transfer == TransferKind::cardan) {
-      closed_form::turn_block(prepared_->numbers[chunk].joint, state);
-      evaluate(state);
-    } else if (transfer == TransferKind::constant_velocity) {
-      evaluate(closed_form::JointState<Dual>{state});
-    } else {
-      evaluate(static_cast<const closed_form::State<Dual>&>(state));
-    }
+    });
   }
 }
 

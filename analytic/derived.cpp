@@ -94,7 +94,7 @@ Extremes extremes_of(const Function& value) {
 
 DerivedQuantities derived_quantities(const PumpParameters& pump) {
   const Geometry& g = pump.geometry;
-  if (pump.transfer.kind != TransferKind::cardan) return derived_quantities(g);
+  if (!pump.transfer.is_uneven_joint()) return derived_quantities(g);
   DerivedQuantities result;
   result.piston_area = kPi / 4 * g.bore_diameter * g.bore_diameter;
   double strokes = 0, nearest = g.piston_length, farthest = 0;

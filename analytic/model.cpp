@@ -151,7 +151,7 @@ void Model::reactions_held(const Instant& instant, std::vector<double>& values,
 }
 
 AxisMotion Model::block_motion(const AxisMotion& shaft) const {
-  if (prepared_->transfer != TransferKind::cardan) return shaft;
+  if (!pump_.transfer.is_uneven_joint()) return shaft;
   Instant instant;
   instant.shaft = shaft;
   AxisMotion block;
@@ -316,7 +316,8 @@ MotionChecks judge(const PreparedPump& pump, const PumpParameters& parameters,
     const Vector3d centre_path = joint_path + share_of_centre * axis_path;
     const Vector3d centre_acceleration = joint_acceleration + share_of_centre * axis_acceleration;
     if constexpr (kWalls) {
-      const auto wall = closed_form::wall_approach(numbers.wall, piston.motion);
+      const auto wall = closed_form::wall_approach(numbers.wall, piston.motion,
+                                                   pump.clearance(static_cast<std::size_t>(k)));
       work -= (values[at.Rw(k, 0)] * wall.x + values[at.Rw(k, 1)] * wall.y) * wall.rate;
     }
     work += axial * (joint_path.z() + axis_path.z()) +

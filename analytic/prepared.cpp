@@ -28,6 +28,10 @@ void prepare(const PumpParameters& pump, const Assumptions& assumptions, Prepare
   result.transfer = pump.transfer.kind;
   result.imposed = assumptions.gear == BlockDrive::imposed;
   const auto pistons = static_cast<std::size_t>(pump.geometry.pistons);
+  result.clearances.clear();
+  if (pump.transfer.wall && !pump.transfer.wall->deviation.empty())
+    for (std::size_t k = 0; k < pistons; ++k)
+      result.clearances.push_back(pump.transfer.wall->clearance_of(k));
   if (result.phase_sin.size() == pistons) return;
   result.phase_sin.clear();
   result.phase_cos.clear();

@@ -38,21 +38,28 @@ struct PreparedPump {
   std::optional<closed_form::ToothLaw> tooth_law;  // of flanks that give way
   std::optional<BevelTeeth> teeth;                 // where the contact is theirs
   std::vector<double> phase_sin, phase_cos;        // of 2 pi k / N
+  std::vector<double> clearances;                  // of each piston where they differ; else empty
 
   /// Whether a gear's teeth carry the block round.
   bool has_tooth_force() const { return transfer == TransferKind::gear && !imposed; }
+  /// m, of a piston, counted from 0.
+  double clearance(std::size_t k) const {
+    return clearances.empty() ? numbers.wall.clearance : clearances[k];
+  }
   closed_form::Common common() const {
-    return {static_cast<int>(phase_sin.size()),
-            phase_sin.data(),
-            phase_cos.data(),
-            imposed,
-            friction,
-            transfer};
+    return {.pistons = static_cast<int>(phase_sin.size()),
+            .phase_sin = phase_sin.data(),
+            .phase_cos = phase_cos.data(),
+            .imposed = imposed,
+            .friction = friction,
+            .transfer = transfer,
+            .clearances = clearances.empty() ? nullptr : clearances.data()};
   }
   /// The same where there is room for the transfer's own columns.
   closed_form::Common common(const ChannelLayout& at) const {
     closed_form::Common result = common();
     if (at.has(Quantity::TcsJoint)) result.couple_column = static_cast<int>(at.TcsJoint(0));
+    if (at.has(Quantity::Fcs)) result.force_column = static_cast<int>(at.Fcs(0));
     if (at.has(Quantity::Rw)) result.wall_column = static_cast<int>(at.Rw(0, 0));
     if (at.has(Quantity::Tb)) result.block_torque_column = static_cast<int>(at.Tb());
     return result;

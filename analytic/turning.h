@@ -7,10 +7,30 @@
 
 namespace bentaxis::analytic {
 
+/// Calls `use` with a state of the type that a transfer has whose block follows from the shaft
+/// alone: JointState, CardanState or DoubleCardanState of a joint, else State of a locked block. It
+/// is to be filled; closed_form::turn_block() turns the block then.
+template <class Real, class Use>
+BENTAXIS_INLINE void with_shaft_state(TransferKind transfer, const Use& use) {
+  const auto of_type = [&](auto state) { use(state); };
+  switch (transfer) {
+    case TransferKind::constant_velocity:
+      return of_type(closed_form::JointState<Real>());
+    case TransferKind::cardan:
+      return of_type(closed_form::CardanState<Real>());
+    case TransferKind::double_cardan:
+      return of_type(closed_form::DoubleCardanState<Real>());
+    case TransferKind::gear:
+    case TransferKind::pistons:
+      break;
+  }
+  of_type(closed_form::State<Real>());
+}
+
 /// Calls `use` with the state of an instant that the transfer has: closed_form::State where the
-/// block is locked to the shaft; FreeState where it moves on its own; JointState or CardanState,
-/// whose block follows from the shaft alone; or WallState. The block's motion of an instant is not
-/// looked at where a joint prescribes it.
+/// block is locked to the shaft; FreeState where it moves on its own; JointState, CardanState or
+/// DoubleCardanState, whose block follows from the shaft alone; or WallState. The block's motion of
+/// an instant is not looked at where a joint prescribes it.
 /// @param modes  of the walls, where pistons carry the block; null: all by their law
 template <class Real, class Use>
 BENTAXIS_INLINE void with_state(TransferKind transfer, const closed_form::Pump<Real>& pump,
@@ -30,11 +50,12 @@ BENTAXIS_INLINE void with_state(TransferKind transfer, const closed_form::Pump<R
     state.block_omega = instant.block.speed;
     state.block_omega_dot = instant.block.acceleration;
   };
-  if (transfer == TransferKind::cardan) {
-    closed_form::CardanState<Real> state;
-    turn_shaft(state);
-    closed_form::turn_block(pump.joint, state);
-    use(state);
+  if (traits_of(transfer).joint) {
+    with_shaft_state<Real>(transfer, [&](auto& state) {
+      turn_shaft(state);
+      closed_form::turn_block(pump.joint, state);
+      use(state);
+    });
     return;
   }
   if (transfer == TransferKind::pistons) {
@@ -43,12 +64,6 @@ BENTAXIS_INLINE void with_state(TransferKind transfer, const closed_form::Pump<R
     turn_block(state, instant.lag ? Real(-instant.lag->angle) / 2
                                   : (Real(instant.block.angle) - theta) / 2);
     state.modes = modes;
-    use(state);
-    return;
-  }
-  if (transfer == TransferKind::constant_velocity) {
-    closed_form::JointState<Real> state;
-    turn_shaft(state);
     use(state);
     return;
   }

@@ -130,6 +130,7 @@ class Assembler {
   void add_state(std::size_t row);
   void close_loop(int k, const FrameMotion& shaft, const FrameMotion& block);
   void turn_block();
+  void join_by_two_crosses();
   // Parts of a tooth force of size 1: what turns the block, what pushes the gears apart.
   Vector turning_part() const {
     return -direction() * std::cos(pump_.gear.pressure_angle) * Vector::UnitX();
@@ -154,7 +155,7 @@ class Assembler {
   Eigen::Matrix3d axes2_;  // of S2, columns
   Vector origin2_;
   Wrench lands_ = Wrench::Zero();
-  Vector joint_couple_ = Vector::Zero();  // direction, where a joint turns the block
+  Wrench joint_ = Wrench::Zero();  // direction of what a joint exerts on the block
   Mechanism mechanism_;
   std::vector<Coordinate> coordinates_;  // of all bodies
 };
@@ -233,10 +234,17 @@ void Assembler::name_forces() {
     const Wrench at_mesh = force_at(mesh_point() - origin2_, line_of_action());
     read(channel(layout.Tcs()), place, at_mesh.tail<3>().dot(axes2_.col(2)));
   } else if (has_joint()) {
+    const bool has_force = layout.has(Quantity::Fcs);
     const int place = add_action("couple of the joint", kBlock, kShaft);
     for (int i = 0; i < 3; ++i) {
+      const Vector axis = axes2_.col(i);
       read(channel(layout.TcsJoint(i)), place);
-      mechanism_.readings.back().component = couple(axes2_.col(i));
+      mechanism_.readings.back().component = couple(axis);
+      if (!has_force) continue;
+      // About O2 instead of O1.
+      mechanism_.readings.back().component->head<3>() = -axis.cross(origin2_);
+      read(channel(layout.Fcs(i)), place);
+      mechanism_.readings.back().component = force_at(Vector::Zero(), axis);
     }
   } else {
     const std::string name = channel(layout.Tcs());
@@ -272,9 +280,10 @@ Vector Assembler::line_of_action() const {
 // x1 at the joint's phase, stays across that of the block's, which lies along y2 then.
 void Assembler::turn_block() {
   coordinates_[kBlock] = coordinates_[kShaft];
-  joint_couple_ = between_axes();
-  if (pump_.transfer.kind != TransferKind::cardan) return;
-  const double phase = pump_.transfer.cardan->phase;
+  joint_ = couple(between_axes());
+  if (pump_.transfer.kind == TransferKind::double_cardan) return join_by_two_crosses();
+  if (!pump_.transfer.is_uneven_joint()) return;
+  const double phase = pump_.transfer.phase();
   const Vector on_shaft(std::cos(phase), -std::sin(phase), 0);
   const Vector on_block(std::sin(phase), std::cos(phase), 0);
   const FrameMotion shaft = moved({}, mechanism_.bodies[kShaft], &coordinates_[kShaft]);
@@ -307,8 +316,31 @@ void Assembler::turn_block() {
                        2 * one.velocity.dot(second.velocity)) /
                      slope;
   // The cross carries a couple across both arms.
-  joint_couple_ = one.origin.cross(second.origin).normalized();
-  if (joint_couple_.dot(z2) < 0) joint_couple_ *= -1;
+  Vector direction = one.origin.cross(second.origin).normalized();
+  if (direction.dot(z2) < 0) direction *= -1;
+  joint_ = couple(direction);
+}
+
+// Two universal joints, by the balance of the shaft between them, which has no mass: either cross
+// gives it a couple across both arms of that cross, and they keep the size of their parts along its
+// axis; what is left across the axis a pair of forces at the crosses' centres takes, across the
+// axis too, along which the shaft slides.
+void Assembler::join_by_two_crosses() {
+  const Vector along = between_axes();
+  const double distance = pump_.transfer.double_cardan->cross_distance;
+  const double phase = pump_.transfer.phase();
+  const Vector arm(std::cos(phase), -std::sin(phase), 0);  // in either body
+  const auto across_both = [&](int body) -> Vector {
+    const FrameMotion frame = moved({}, mechanism_.bodies[body], &coordinates_[body]);
+    const Vector here = frame.axes * arm;
+    const Vector couple = here.cross(along.cross(here));
+    return couple / couple.dot(along);
+  };
+  const Vector lever = distance * axes2_.col(2);  // of the block's cross, from O2
+  const double length = (lever + distance * Vector::UnitZ()).norm();
+  const Vector from_shaft = across_both(kShaft), to_block = across_both(kBlock);
+  const Vector force = (from_shaft - to_block).cross(along) / length;
+  joint_ = force_at(origin2_ + lever, force) + couple(to_block);
 }
 
 // Slide and tilts of a piston that put its A onto the shaft's, with their rates.
@@ -385,7 +417,7 @@ void Assembler::add_state(std::size_t row) {
         moved(block, mechanism_.bodies[kFirstPiston + k], &coordinates_[2 + k * piston_freedoms()]);
     // Chambers turn with the block.
     const double pressure =
-        pump_.transfer.kind == TransferKind::cardan
+        pump_.transfer.is_uneven_joint()
             ? trace_(piston_angle_deg(coordinates_[kBlock].position / kRadPerDegree, k + 1, n_))
             : samples_.chamber_pressure[row * n_ + k];
     const double speed = piston.velocity.dot(z2);
@@ -417,7 +449,7 @@ void Assembler::add_state(std::size_t row) {
   // Part of the drive torque is lost in proportion.
   state.actions.emplace_back(friction.shaft_torque_factor * couple(z1));
   state.actions.push_back(meshes()      ? force_at(mesh_point(), line_of_action())
-                          : has_joint() ? couple(joint_couple_)
+                          : has_joint() ? joint_
                                         : couple(z2));
   if (meshes() && has_two_flanks())
     state.other_sides = {force_at(mesh_point(), turning_part() - separating_part())};

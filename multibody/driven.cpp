@@ -74,11 +74,10 @@ ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, con
   // With a universal joint each piston has a trajectory of its own.
   const TransferKind transfer = the_case.pump.transfer.kind;
   const bool shared =
-      scene == Scene::piston && transfer != TransferKind::cardan && one_stands_for_all(samples);
+      scene == Scene::piston && the_case.pump.transfer.is_even() && one_stands_for_all(samples);
   // Where the block is not locked to the shaft, chambers are at the pressures of its own angle.
   std::optional<PressureTrace> pressure;
-  if (transfer == TransferKind::cardan || transfer == TransferKind::pistons)
-    pressure.emplace(the_case.pressure);
+  if (!the_case.pump.transfer.is_even()) pressure.emplace(the_case.pressure);
   std::array<long, kLagRules> rows_by_rule = {};
   Instant moved;
   std::vector<std::vector<double>> of_one;
@@ -106,7 +105,7 @@ ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, con
         const LagRule rule =
             model.evaluate_at_frozen_lag(angle, samples.omega, *pressure, samples.ports, row);
         ++rows_by_rule[static_cast<std::size_t>(rule)];
-      } else if (transfer == TransferKind::cardan) {
+      } else if (the_case.pump.transfer.is_uneven_joint()) {
         moved = instant;
         const double lead = model.block_beside(instant.shaft).angle - instant.shaft.angle;
         for (int k = 1; k <= at.pistons(); ++k)

@@ -23,10 +23,9 @@ void check(const Case& the_case, const Samples& samples) {
                      " pistons for a pump with " + std::to_string(the_case.pump.geometry.pistons));
   refuse_ring_off_b(the_case.pump);
   refuse_teeth(the_case);
-  const TransferKind transfer = the_case.pump.transfer.kind;
-  if (transfer == TransferKind::cardan || transfer == TransferKind::pistons)
+  if (!the_case.pump.transfer.is_even())
     throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") +
-                     "[transfer] kind = \"" + to_string(transfer) +
+                     "[transfer] kind = \"" + to_string(the_case.pump.transfer.kind) +
                      "\": not integrated by run --way integrated, where the block turns as the "
                      "shaft does; use the driven way, or simulate");
   if (the_case.operation.speed_rpm == 0)

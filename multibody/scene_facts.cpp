@@ -93,6 +93,9 @@ std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameter
             "rotations)"
       : transfer == TransferKind::cardan
           ? "universal joint (arms of two forks at right angles, one equation of their rotations)"
+      : transfer == TransferKind::double_cardan
+          ? "two universal joints with a sliding shaft between them (arms of both forks in one "
+            "plane with the crosses' centres, one equation of places and rotations)"
       : transfer == TransferKind::pistons ? "pistons that touch their bores (spheres in cylinders, "
                                             "contact found in a force element)"
       : !mesh                             ? "gear replaced by a speed imposed on the block's joint"

@@ -63,7 +63,7 @@ double over_peak(const ResultTable& table, const std::string& column, const std:
 
 TEST(Budget, ClosesOnAllStoredCasesInBothModels) {
   const auto files = cases_with_a_turn();
-  ASSERT_EQ(files.size(), 28);
+  ASSERT_EQ(files.size(), 29);
   for (const auto& file : files) {
     SCOPED_TRACE(file);
     const study::PreparedCase ready = study::prepare(read_case(file));

@@ -12,6 +12,7 @@
 #include "closed_form/reactions.h"
 #include "prepared.h"
 #include "support.h"
+#include "turning.h"
 
 namespace bentaxis::test {
 namespace {
@@ -41,30 +42,24 @@ struct Extended {
 
     const auto at = [&](auto get) { return get(instant) + step * Real(get(instant_rate)); };
     const Real theta = at([](const Instant& i) { return i.shaft.angle; });
-    closed_form::CardanState<Real> state;
-    state.sine = std::sin(theta);
-    state.cosine = std::cos(theta);
-    state.omega = at([](const Instant& i) { return i.shaft.speed; });
-    state.omega_dot = at([](const Instant& i) { return i.shaft.acceleration; });
-    state.suction = at([](const Instant& i) { return i.ports.suction; });
-    state.delivery = at([](const Instant& i) { return i.ports.delivery; });
+    const closed_form::State<Real> shaft = {
+        std::sin(theta),
+        std::cos(theta),
+        at([](const Instant& i) { return i.shaft.speed; }),
+        at([](const Instant& i) { return i.shaft.acceleration; }),
+        at([](const Instant& i) { return i.ports.suction; }),
+        at([](const Instant& i) { return i.ports.delivery; })};
     const ChannelLayout layout(pump);
     std::vector<Real> out(layout.size());
     const PreparedPump place = prepare(pump, assumptions);
-    const auto evaluate = [&](const auto& turning) {
+    with_shaft_state<Real>(pump.transfer.kind, [&](auto& turning) {
+      static_cast<closed_form::State<Real>&>(turning) = shaft;
+      closed_form::turn_block(prepared.joint, turning);
       closed_form::reactions<Real>(
           place.common(layout), prepared, turning, true,
           [&](int k) { return at([k](const Instant& i) { return i.chamber_pressure[k]; }); },
           [&](int index, Real value) { out[index] = value; });
-    };
-    if (pump.transfer.kind == TransferKind::cardan) {
-      closed_form::turn_block(prepared.joint, state);
-      evaluate(state);
-    } else if (pump.transfer.kind == TransferKind::constant_velocity) {
-      evaluate(closed_form::JointState<Real>{state});
-    } else {
-      evaluate(static_cast<const closed_form::State<Real>&>(state));
-    }
+    });
     return out;
   }
 
@@ -100,13 +95,19 @@ TEST(Derivatives, AreDifferencesInExtendedPrecision) {
   RandomPump random(17);
   double worst = 0;
   int of_joints = 0;
-  for (int i = 0; i < 90; ++i) {
+  int of_two_crosses = 0;
+  for (int i = 0; i < 105; ++i) {
     Extended x;
     x.pump = random.free(random.pump());
     if (i >= 60) {
       x.pump.gear = {};
       x.pump.transfer.kind = i % 3 == 0 ? TransferKind::constant_velocity : TransferKind::cardan;
-      if (i % 3 != 0) x.pump.transfer.cardan = CardanJoint{0.1 * i - 7};
+      if (i >= 90) {
+        x.pump.transfer.kind = TransferKind::double_cardan;
+        x.pump.transfer.double_cardan = DoubleCardanJoint{2e-3 * (i - 80)};
+      }
+      if (x.pump.transfer.has_crosses())
+        x.pump.transfer.cardan = CardanJoint{0.1 * i - (i < 90 ? 7 : 9.5)};
       x.pump.block.axial_inertia = 1e-3 * (i - 50);
       if (assembly_margin(x.pump).longest_distance >= 0.9 * x.pump.geometry.piston_length) continue;
       ++of_joints;
@@ -187,7 +188,24 @@ TEST(Derivatives, AreDifferencesInExtendedPrecision) {
             << names[d] << ", couple " << axis << ", pump " << i;
       }
     }
+    if (x.pump.transfer.kind != TransferKind::double_cardan) continue;
+    ++of_two_crosses;
+    std::vector<double> force(3);
+    model.joint_force(x.instant, instants, force, rates);
+    for (std::size_t d = 0; d < pumps.size(); ++d) {
+      x.pump_rate = pumps[d];
+      x.instant_rate = instants[d];
+      const std::vector<Real> differences = x.derivatives(step);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t c = model.layout().Fcs(axis);
+        ASSERT_NEAR(force[axis], expected[c], 1e-13 * scale);
+        ASSERT_NEAR(rates[3 * d + axis], static_cast<double>(differences[c]),
+                    scaled(kTolerance) * scale)
+            << names[d] << ", force " << axis << ", pump " << i;
+      }
+    }
   }
+  EXPECT_GT(of_two_crosses, 5);
   EXPECT_GT(of_joints, 20);
   RecordProperty("worst", std::to_string(worst));
 }
@@ -204,6 +222,11 @@ TEST(Derivatives, OfOtherTransfersAreRefused) {
               model.joint_couple(instant, {&rate, 1}, three, three);
             }),
             "derivatives: [transfer] kind = \"gear\": must be a joint, which has a couple");
+  EXPECT_EQ(refusal([&] {
+              model.joint_force(instant, {&rate, 1}, three, three);
+            }),
+            "derivatives: [transfer] kind = \"gear\": must be \"double_cardan\", whose joint has "
+            "a force");
   const Case pistons = read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) /
                                  "reference_data/transfers/pistons_seven/case.toml");
   const PumpParameters none = no_rates(pistons.pump);

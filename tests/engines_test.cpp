@@ -107,7 +107,7 @@ TEST_P(EachEngine, PistonsAcrossTheirBoresAreOnTheRightSide) {
   }
 }
 
-// Universal joint, Rc away from B, and two flanks with a tooth force of either sign.
+// Universal joint, two of them, Rc away from B, and two flanks with a tooth force of either sign.
 TEST_P(EachEngine, AgreesBeyondTheShippedCurves) {
   const std::filesystem::path source = BENTAXIS_SOURCE_DIR;
   std::vector<Case> cases;
@@ -115,6 +115,9 @@ TEST_P(EachEngine, AgreesBeyondTheShippedCurves) {
     cases.push_back(read_case(source / "cases/bap63_cardan.toml"));
     cases.back().pump.transfer.cardan->phase = phase;
     cases.back().pump.block.axial_inertia = 2.5e-3;
+    cases.push_back(read_case(source / "cases/bap63_double_cardan.toml"));
+    cases.back().pump.transfer.cardan->phase = phase;
+    cases.back().pump.geometry.axis_offset = 1.5e-3;
   }
   cases.push_back(rated(72));
   cases.back().pump.piston.contact = 0.04;

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "bentaxis/analytic/model.h"
+#include "bentaxis/analytic/simulation.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/multibody/simulation.h"
@@ -122,6 +123,14 @@ Case unseen(const std::string& name, int pistons, bool reversed, double offset_m
   return c;
 }
 
+// The same pump with two crosses instead of its joint.
+Case with_two_crosses(Case c, double distance_mm, double phase_deg) {
+  c.pump.transfer.kind = TransferKind::double_cardan;
+  c.pump.transfer.cardan = CardanJoint{radians(phase_deg)};
+  c.pump.transfer.double_cardan = DoubleCardanJoint{distance_mm * 1e-3};
+  return c;
+}
+
 std::vector<Case> joints() {
   std::vector<Case> cases;
   for (const char* const name : {"constant_velocity", "cardan"}) {
@@ -129,6 +138,11 @@ std::vector<Case> joints() {
     cases.push_back(unseen(name, 6, true, -0.8));
     cases.push_back(unseen(name, 9, false, 1.3));
   }
+  cases.push_back(
+      read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases/bap63_double_cardan.toml"));
+  for (std::size_t i = 0; i < 3; ++i)
+    cases.push_back(with_two_crosses(cases[i], 9 + 6 * static_cast<double>(i),
+                                     70 * static_cast<double>(i) - 30));
   return cases;
 }
 
@@ -157,7 +171,7 @@ TEST(MultibodyTransfer, joints_are_ideal) {
       const Vec z1{0, -s, cosine}, z2{0, 0, 1};  // in S2
       EXPECT_NEAR(dot(couple, z2) * block.speed - dot(couple, z1) * instant.shaft.speed, 0,
                   1e-12 * size * std::abs(instant.shaft.speed));
-      if (c.pump.transfer.kind == TransferKind::constant_velocity) {
+      if (c.pump.transfer.is_even()) {
         const double half = c.pump.geometry.tilt / 2;
         EXPECT_NEAR(couple[0], 0, 1e-12 * size);
         EXPECT_NEAR(couple[1] * std::cos(half) + couple[2] * std::sin(half), 0, 1e-12 * size);
@@ -170,6 +184,17 @@ TEST(MultibodyTransfer, joints_are_ideal) {
         EXPECT_NEAR(dot(a1, a2), 0, 1e-14);
         EXPECT_NEAR(dot(couple, a1), 0, 1e-12 * size);
         EXPECT_NEAR(dot(couple, a2), 0, 1e-12 * size);
+      }
+      if (at.has(Quantity::Fcs)) {
+        // Across the arms of both forks.
+        const double t = instant.shaft.angle - c.pump.transfer.phase();
+        const Vec force{row[at.Fcs(0)], row[at.Fcs(1)], row[at.Fcs(2)]};
+        const Vec a1{std::cos(t), std::sin(t) * cosine, std::sin(t) * s};
+        const Vec a2{std::cos(t), std::sin(t), 0};
+        const double large = std::sqrt(dot(force, force));
+        EXPECT_GT(large, 0);
+        EXPECT_NEAR(dot(force, a1), 0, 1e-12 * large);
+        EXPECT_NEAR(dot(force, a2), 0, 1e-12 * large);
       }
       for (const BodySum& sum : sums_of(model.body_loads())) {
         EXPECT_LE(sum.force_over_sum, 1e-12) << sum.body << " at " << theta;
@@ -395,8 +420,11 @@ TEST(MultibodyTransfer, agrees_with_the_closed_form_on_unseen_cases) {
 
 // Given states: walls in and out of contact, on either side, approaching and leaving; accelerating.
 TEST(MultibodyTransfer, agrees_with_the_closed_form_at_given_states) {
-  for (const char* const name : {"constant_velocity", "cardan", "pistons_seven"}) {
-    const Case c = unseen(name, 7, false, 0.3);
+  const std::string names[] = {"constant_velocity", "cardan", "pistons_seven", "double_cardan"};
+  for (const std::string& name : names) {
+    const bool two = name == "double_cardan";
+    Case c = unseen(two ? "constant_velocity" : name, 7, false, 0.3);
+    if (two) c = with_two_crosses(c, 12, 50);
     multibody::Model multibody(c.pump, c.multibody, 1);
     const analytic::Model closed(c.pump, c.multibody);
     const ChannelLayout& at = closed.layout();
@@ -431,6 +459,66 @@ TEST(MultibodyTransfer, agrees_with_the_closed_form_at_given_states) {
   }
 }
 
+// A clearance of its own for each piston: at constant speed, at given states and in time.
+TEST(MultibodyTransfer, clearances_of_each_piston_are_those_of_the_closed_form) {
+  const auto with = [](Case c, std::vector<double> um) {
+    for (double& each : um) each *= 1e-6;
+    c.pump.transfer.wall->deviation = um;
+    return c;
+  };
+  std::vector<Case> cases = {
+      with(Stored("pistons_seven").the_case, {12, -7, 0, 30, -22, 5, 1}),
+      with(unseen("pistons_seven", 6, true, -0.4), {0, 40, -15, -30, 8, 0}),
+      with(unseen("pistons_seven", 9, false, -0.2), {0, 3, -6, 9, -12, 15, -18, 21, -24})};
+  cases[2].pump.transfer.wall->exponent = 1.5;
+  for (const Case& c : cases) {
+    const Samples samples = sample_case(c, PressureTrace(c.pressure));
+    Case real = c;
+    real.analytic = c.multibody;
+    const ResultTable closed = analytic::run(real, real.analytic, samples);
+    worst_difference(closed, turn(c), 10 * wall_round_off(c.pump));
+    // The clearances matter.
+    Case equal = real;
+    equal.pump.transfer.wall->deviation.clear();
+    const ResultTable other = analytic::run(equal, equal.analytic, samples);
+    double off = 0;
+    for (std::size_t row = 0; row < closed.rows(); ++row)
+      update_max_abs(off,
+                     closed.at(row, closed.find("lag_deg")) - other.at(row, other.find("lag_deg")));
+    EXPECT_GT(off, 1e-2);
+    const multibody::FreePlay play = multibody::free_play(c.pump, radians(50));
+    const analytic::FreePlay same = analytic::Model(c.pump, c.multibody).free_play(radians(50));
+    EXPECT_NEAR(play.low, same.low, 1e-13);
+    EXPECT_NEAR(play.high, same.high, 1e-13);
+  }
+  const Case moving = with(Stored("pistons_seven_free").the_case, {8, -5, 0, 12, -10, 3, 0});
+  SimulationOptions options;
+  options.error = 1e-6;
+  const PressureTrace pressure(moving.pressure);
+  const ResultTable a = analytic::simulate(moving, moving.analytic, pressure).table.results;
+  const ResultTable b =
+      multibody::simulate(moving, moving.multibody, pressure, options).table.results;
+  for (const char* name : {"Rw_1_x2_N", "Rw_4_y2_N", "Rb1_x1_N", "Td_z1_Nm", "lag_deg"})
+    for (std::size_t row = 0; row < a.rows(); ++row)
+      EXPECT_NEAR(a.at(row, a.find(name)), b.at(row, b.find(name)),
+                  kSimulated * a.peak(a.channels[a.find(name)].group))
+          << name << " " << row;
+}
+
+// Deviations of zero leave every bit.
+TEST(MultibodyTransfer, clearances_without_deviations_change_no_bit) {
+  const Case c = Stored("pistons_seven").the_case;
+  Case same = c;
+  same.pump.transfer.wall->deviation.assign(7, 0.0);
+  const ResultTable a = turn(c), b = turn(same);
+  ASSERT_EQ(a.values.size(), b.values.size());
+  for (std::size_t i = 0; i < a.values.size(); ++i) {
+    if (is_computed(a.values[i]) || is_computed(b.values[i])) {
+      ASSERT_EQ(a.values[i], b.values[i]) << i;
+    }
+  }
+}
+
 // A joint in time, at constant speed: the turn of the driven mode, found by integration.
 TEST(MultibodyTransfer, simulates_joints) {
   for (const char* const name : {"constant_velocity", "cardan"}) {
@@ -449,6 +537,40 @@ TEST(MultibodyTransfer, simulates_joints) {
   }
 }
 
+// Two crosses in time: the turn of the driven mode, and a shaft that runs free under a torque
+// against the closed form.
+TEST(MultibodyTransfer, simulates_two_crosses) {
+  Case c = with_two_crosses(Stored("constant_velocity").the_case, 15, 20);
+  c.drive.emplace();
+  c.drive->duration = 0.04;
+  c.drive->samples = 72;
+  SimulationOptions options;
+  options.error = 1e-6;
+  const PressureTrace pressure(c.pressure);
+  const ResultTable run = multibody::simulate(c, c.multibody, pressure, options).table.results;
+  const ResultTable driven = turn(c);
+  const std::size_t force = run.find("Fcs_x2_N");
+  ASSERT_LT(force, run.columns());
+  ASSERT_EQ(run.rows(), driven.rows() + 1);
+  for (const Channel& channel : driven.channels) {
+    if (channel.kind != ChannelKind::reaction || channel.quantity == "Rcs") continue;
+    for (std::size_t row = 0; row < driven.rows(); ++row)
+      ASSERT_NEAR(run.at(row, run.find(channel.name)), driven.at(row, driven.find(channel.name)),
+                  kSimulated * driven.peak(channel.group))
+          << channel.name << " " << row;
+  }
+  c.drive->kind = DriveKind::torque;
+  c.drive->torque = 310;
+  c.drive->duration = 0.02;
+  const ResultTable a = analytic::simulate(c, c.multibody, pressure).table.results;
+  const ResultTable b = multibody::simulate(c, c.multibody, pressure, options).table.results;
+  for (const char* name : {"Fcs_x2_N", "Fcs_y2_N", "Rb1_x1_N", "Rcn_y2_N", "Rs_2_z2_N"})
+    for (std::size_t row = 0; row < a.rows(); ++row)
+      ASSERT_NEAR(a.at(row, a.find(name)), b.at(row, b.find(name)),
+                  kSimulated * a.peak(a.channels[a.find(name)].group))
+          << name << " " << row;
+}
+
 // Each parameter of the table, off by a millionth in this model's case, is noticed by the curves.
 TEST(MultibodyTransfer, notices_every_parameter_of_the_table) {
   const auto worst = [](const Stored& stored, const Case& the_case) {
@@ -462,6 +584,29 @@ TEST(MultibodyTransfer, notices_every_parameter_of_the_table) {
   Case c = cardan.the_case;
   c.pump.transfer.cardan->phase *= kOff;
   EXPECT_GT(worst(cardan, c), 10 * kDriven);
+  // Of two crosses, against the closed form.
+  const Case two = with_two_crosses(Stored("constant_velocity").the_case, 15, 20);
+  const ResultTable closed =
+      analytic::run(two, two.multibody, sample_case(two, PressureTrace(two.pressure)));
+  const auto off_by = [&](const Case& other) {
+    const ResultTable found = turn(other);
+    double most = 0;
+    for (std::size_t column = 0; column < closed.columns(); ++column) {
+      if (closed.channels[column].kind != ChannelKind::reaction) continue;
+      for (std::size_t row = 0; row < closed.rows(); ++row)
+        if (is_computed(closed.at(row, column)))
+          update_max_abs(most, (closed.at(row, column) - found.at(row, column)) /
+                                   closed.peak(closed.channels[column].group));
+    }
+    return most;
+  };
+  EXPECT_LT(off_by(two), kDriven);
+  Case wrong = two;
+  wrong.pump.transfer.cardan->phase *= kOff;
+  EXPECT_GT(off_by(wrong), 10 * kDriven);
+  wrong = two;
+  wrong.pump.transfer.double_cardan->cross_distance *= kOff;
+  EXPECT_GT(off_by(wrong), 10 * kDriven);
   const auto with = [&](double WallContact::*field) {
     Case off = pistons.the_case;
     (*off.pump.transfer.wall).*field *= kOff;

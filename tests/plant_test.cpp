@@ -161,6 +161,8 @@ INSTANTIATE_TEST_SUITE_P(
                     [] { return shipped("bap63_constant_velocity", 0.01, 20); }},
         AsSimulated{"universal_joint", Drive::speed,
                     [] { return shipped("bap63_cardan", 0.01, 20); }},
+        AsSimulated{"double_universal_joint", Drive::speed,
+                    [] { return shipped("bap63_double_cardan", 0.01, 20); }},
         AsSimulated{"universal_joint_free_shaft", Drive::torque,
                     [] {
                       Case c = shipped("bap63_cardan", 0.01, 20);

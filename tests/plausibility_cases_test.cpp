@@ -105,6 +105,12 @@ const Changed kCardan[] = {
      "transfer.clearance_mm=0.764"},
 };
 
+const Changed kDoubleCardan[] = {
+    {"cross-distance", "transfer.cross_distance_mm=1.9", "transfer.cross_distance_mm=2.1"},
+    {"cross-distance", "transfer.cross_distance_mm=201",
+     "transfer.cross_distance_mm=201 transfer.kind=constant_velocity"},
+};
+
 // Seven pistons, w = 12/46: the pistons swing by 0.7605 mm. The piston that carries leaves its wall
 // at 20.36 mm/s: 1/49.1 of a m/s. It does so at psi_k = 203 deg, where it stands 30.88 mm out of a
 // bore that begins where its joint comes nearest to the block. Both by positions alone, at 3600
@@ -141,12 +147,14 @@ TEST(PlausibilityCases, WarnBeyondALimitAndNotWithinIt) {
   for (const Changed& c : kRated) hold("bap63_rated", c);
   for (const Changed& c : kHydraulic) hold("bap63_rated_hydraulic", c);
   for (const Changed& c : kCardan) hold("bap63_cardan", c);
+  for (const Changed& c : kDoubleCardan) hold("bap63_double_cardan", c);
   for (const Changed& c : kPistons) hold("bap63_tapered_pistons", c);
 }
 
 TEST(PlausibilityCases, AShippedPumpIsNotWarnedOf) {
-  for (const char* name : {"bap63_rated", "bap63_rated_hydraulic", "bap63_teeth",
-                           "bap63_constant_velocity", "bap63_cardan", "bap63_tapered_pistons"}) {
+  for (const char* name :
+       {"bap63_rated", "bap63_rated_hydraulic", "bap63_teeth", "bap63_constant_velocity",
+        "bap63_cardan", "bap63_double_cardan", "bap63_tapered_pistons"}) {
     const study::Plausibility found = study::plausibility(shipped(name, {}));
     EXPECT_THAT(codes_of(found.warnings), IsEmpty()) << name;
     EXPECT_THAT(codes_of(found.meant), IsEmpty()) << name;

@@ -218,6 +218,11 @@ void expect_theory(const Reader& scene, const Case& the_case,
       near(scene.sum(Reader::of(scene.load("Tcs")["moment"], model), row, model),
            in_s2(value("Tcs_x2_Nm"), value("Tcs_y2_Nm"), value("Tcs_z2_Nm")), table.peak("Tcs"),
            "Tcs");
+    if (p.transfer.kind == TransferKind::double_cardan) {
+      near(force("Fcs"), in_s2(value("Fcs_x2_N"), value("Fcs_y2_N"), value("Fcs_z2_N")),
+           table.peak("Fcs"), "Fcs");
+      near(at("Fcs"), points.o2, size, "place of Fcs");
+    }
     if (p.transfer.kind == TransferKind::pistons)
       for (int k = 1; k <= p.geometry.pistons; ++k) {
         const std::string n = std::to_string(k);
@@ -310,8 +315,9 @@ void expect_scene_of(Case the_case) {
 }
 
 TEST(PumpScene, StandsAndActsAsInTheTables) {
-  for (const char* name : {"bap63_rated", "bap63_as_compared_in_the_paper", "bap63_teeth",
-                           "bap63_constant_velocity", "bap63_cardan", "bap63_tapered_pistons"})
+  for (const char* name :
+       {"bap63_rated", "bap63_as_compared_in_the_paper", "bap63_teeth", "bap63_constant_velocity",
+        "bap63_cardan", "bap63_double_cardan", "bap63_tapered_pistons"})
     expect_scene_of(shipped_case(name));
   for (const std::string& name : reference_cases()) expect_scene_of(reference_case(name));
 }
@@ -546,6 +552,7 @@ TEST(PumpScene, ShowsTheTransferOfThePump) {
       {"bap63_rated", "gears are their pitch cones"},
       {"bap63_constant_velocity", "the constant-velocity joint is drawn"},
       {"bap63_cardan", "the arms of both forks"},
+      {"bap63_double_cardan", "the arms in the forks of shaft and block"},
       {"bap63_tapered_pistons", "the sphere that touches the wall"}};
   for (const auto& [name, words] : kWords) {
     SCOPED_TRACE(name);

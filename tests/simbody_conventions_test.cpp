@@ -252,9 +252,87 @@ TEST(SimbodyConventions, UniversalJointIsTheUniversalMobilizer) {
     // takes its half of the couple's part about the axis.
     Vec3 couple = constraint_force_on(two, with_block, by_cross.block)[0];
     couple += 0.00075 * by_cross.block.getOneUDot(two, 0) * Vec3(by_cross.frame.z());
-    EXPECT_LT(distance(joint.couple_on_block(one), couple), 1e-8 * TurnedBlock::kTorque) << angle;
+    EXPECT_LT(distance(joint.on_block(one)[0], couple), 1e-8 * TurnedBlock::kTorque) << angle;
+    EXPECT_EQ(joint.on_block(one)[1], Vec3(0)) << angle;
     EXPECT_NEAR(applied_generalized_force(one, by_equation.drive),
                 applied_generalized_force(two, by_cross.drive), 1e-8 * TurnedBlock::kTorque);
+  }
+}
+
+// The equation of two universal joints against two real crosses: Simbody's universal mobilizers on
+// shaft and block, between them two pieces of a shaft that slide along each other. All is held at
+// rest under a torque on the block: what the bodies exert does not depend on their masses, which
+// Simbody needs.
+TEST(SimbodyConventions, DoubleUniversalJointIsTwoUniversalMobilizersAndASlider) {
+  constexpr double kDistance = 0.017, kOffset = 0.02;
+  PumpParameters pump;
+  pump.geometry.tilt = TurnedBlock::kTilt;
+  pump.geometry.axis_offset = kOffset;
+  pump.geometry.joint_circle_radius = 0.025;
+  pump.transfer.kind = TransferKind::double_cardan;
+  pump.transfer.cardan = CardanJoint{TurnedBlock::kPhase};
+  pump.transfer.double_cardan = DoubleCardanJoint{kDistance};
+  TurnedBlock by_equation(1);
+  const BlockJoint joint(pump, by_equation.shaft, by_equation.block);
+
+  TurnedBlock by_crosses(1);
+  // Axes of either outer fork: its arm is x. A piece of the shaft between them has the line of the
+  // crosses' centres as z and the arms of its fork as y.
+  const Rotation fork(-TurnedBlock::kPhase, ZAxis);
+  const Transform slide(Rotation(-Pi / 2, YAxis));   // its x is z
+  const Transform swapped(Rotation(Pi / 2, ZAxis));  // its x and y are y and -x
+  const Body::Rigid piece(MassProperties(0.1, Vec3(0), Inertia(1e-4)));
+  MobilizedBody::Universal first(by_crosses.shaft, Transform(fork, Vec3(0, 0, kOffset - kDistance)),
+                                 piece, Transform());
+  MobilizedBody::Slider slider(first, slide, piece, slide);
+  MobilizedBody::Universal second(slider, swapped, piece, swapped);
+  const Constraint::Weld with_block(by_crosses.block, Transform(fork, Vec3(0, 0, kDistance)),
+                                    second, Transform());
+
+  State one = by_equation.w.system.realizeTopology(), two = by_crosses.w.system.realizeTopology();
+  by_equation.drive.setSpeed(one, 0);
+  by_crosses.drive.setSpeed(two, 0);
+  JointMotion law(pump);
+  for (const double angle : {0.2, 0.9, 1.7, 2.4, 3.9, 5.5}) {
+    const AxisMotion block = law.block({angle, TurnedBlock::kSpeed, 120});
+    EXPECT_NEAR(block.angle, angle, 1e-15);
+    EXPECT_NEAR(block.speed, TurnedBlock::kSpeed, 1e-13 * TurnedBlock::kSpeed);
+    EXPECT_NEAR(block.acceleration, 120, 1e-12 * std::pow(TurnedBlock::kSpeed, 2));
+    const AxisMotion rest{angle, 0, 0};
+    by_equation.move(one, rest, rest);
+    by_equation.w.system.realize(one, Stage::Acceleration);
+
+    by_crosses.move(two, rest, rest);
+    const Rotation& of_shaft = by_crosses.shaft.getBodyRotation(two);
+    const Rotation& of_block = by_crosses.block.getBodyRotation(two);
+    const Vec3 o2 = by_crosses.frame.p();
+    const Vec3 apart = o2 + kDistance * Vec3(of_block.z()) - (o2 - kDistance * Vec3(of_shaft.z()));
+    const Rotation between(UnitVec3(apart), ZAxis, UnitVec3(apart % (of_shaft * Vec3(fork.x()))),
+                           YAxis);
+    first.setQToFitRotation(two, ~(of_shaft * fork) * between);
+    slider.setLength(two, apart.norm());
+    second.setQToFitRotation(two, ~(between * swapped.R()) * (of_block * fork * swapped.R()));
+    by_crosses.w.system.realize(two, Stage::Acceleration);
+    EXPECT_LT(two.getQErr().normInf(), 1e-14) << angle;
+    EXPECT_LT(one.getQErr().normInf(), 1e-14) << angle;
+    EXPECT_LT(two.getUDot().normInf(), 1e-8) << angle;
+
+    const SpatialVec carried = joint.on_block(one);
+    const SpatialVec real = constraint_force_on(two, with_block, by_crosses.block);
+    const double force = TurnedBlock::kTorque / kDistance;
+    EXPECT_LT(distance(carried[0], real[0]), 1e-9 * TurnedBlock::kTorque) << angle;
+    EXPECT_LT(distance(carried[1], real[1]), 1e-9 * force) << angle;
+    EXPECT_GT(real[1].norm(), 1e-2 * force) << angle;
+    EXPECT_NEAR(applied_generalized_force(one, by_equation.drive),
+                applied_generalized_force(two, by_crosses.drive), 1e-9 * TurnedBlock::kTorque);
+    // What holds the shaft.
+    Vector_<SpatialVec> held_one, held_two;
+    joint_forces(one, by_equation.w.matter, held_one);
+    joint_forces(two, by_crosses.w.matter, held_two);
+    const SpatialVec off = held_one[by_equation.shaft.getMobilizedBodyIndex()] -
+                           held_two[by_crosses.shaft.getMobilizedBodyIndex()];
+    EXPECT_LT(off[0].norm(), 1e-9 * TurnedBlock::kTorque) << angle;
+    EXPECT_LT(off[1].norm(), 1e-9 * force) << angle;
   }
 }
 

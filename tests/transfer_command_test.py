@@ -44,6 +44,9 @@ class TransferTest(ProgramTest):
         self.assertAlmostEqual(float(ripple[1]), 100 * (1 / math.cos(tilt) - math.cos(tilt)), delta=0.1)
         self.assertRegex(said, r"Side couple of the joint: up to [0-9.]+ Nm on the block")
         self.assertRegex(said, r"Dead centres of the pistons, by the angle psi_k of the bore: -?[0-9.]+ to")
+        said = self.run_program("run", self.case_of("double_cardan"), *FEW, "--model", "analytic", "--out", "two").out
+        self.assertRegex(said, r"Side force of the joint on block and shaft: up to [0-9.]+ N at")
+        self.assertNotIn("ripple", said)
         said = self.run_program("run", self.case_of("tapered_pistons"), *FEW, "--model", "analytic", "--out", "walls").out
         self.assertRegex(said, r"Block: [0-9.]+ to [0-9.]+ deg behind the shaft\.")
         self.assertRegex(said, r"Walls: largest force [0-9.]+ N at [0-9.]+ deg \(piston \d\); \d+ hand-overs per turn")
@@ -52,7 +55,7 @@ class TransferTest(ProgramTest):
         self.assertNotRegex(said, "Dead centres|Walls|Side couple|Free play")
 
     def test_both_models_and_commands_state_the_same_figures(self):
-        for name in ("constant_velocity", "cardan", "tapered_pistons"):
+        for name in ("constant_velocity", "cardan", "double_cardan", "tapered_pistons"):
             with self.subTest(name):
                 self.run_program("compare", self.case_of(name), *FEW, "--out", name)
                 figures = self.figures(name)
@@ -106,13 +109,19 @@ class TransferTest(ProgramTest):
         self.run_program("compare", case, *FEW, "--multibody", "transfer=cardan", "inertia=lumped", "--out", "cardan")
         self.run_program("compare", self.case_of("constant_velocity"), *FEW, "--analytic", "transfer=cardan", "piston_friction=off",
                          "--out", "both")
+        # Two crosses beside a constant-velocity joint: what the force at O2 does.
+        self.run_program("compare", self.case_of("double_cardan"), *FEW, "--multibody", "transfer=constant_velocity", "--out", "crosses")
+        report = json.loads((self.folder / "crosses" / "report.json").read_text())
+        self.assertEqual(report["verdict"]["word"], "Explained")
+        line = self.refused("compare", case, *FEW, "--multibody", "transfer=double_cardan", "--out", "none")
+        self.assert_mentions(line, "[transfer]", "cross_distance_mm")
         # A wrong parameter is no part of the assumption.
         line = self.refused("compare", case, *FEW, "--multibody", "transfer=pistons", "--out", "none")
         self.assert_mentions(line, "[transfer]", "contact_from_joint_mm")
         line = self.refused("compare", self.case_of("cardan"), *FEW, "--multibody", "transfer=gear", "--out", "none")
         self.assert_mentions(line, "[gear]")
         line = self.refused("compare", case, "--multibody", "transfer=chain", "--out", "none")
-        self.assert_mentions(line, "--multibody transfer=chain", "cardan")
+        self.assert_mentions(line, "--multibody transfer=chain", "transfer=gear|constant_velocity|cardan|pistons|double_cardan")
         line = self.refused("compare", case, "--multibody", "transfer=cardan", "--multibody-case", case, "--out", "none")
         self.assert_mentions(line, "--multibody-case", "transfer=")
 
@@ -131,6 +140,13 @@ class TransferTest(ProgramTest):
                          "mean:Td,displacement_cm3", "--out", "uncertainty")
         self.run_program("optimise", joint, *few, "--vary", "transfer.phase_deg=0:90", "--minimise", "peak:Rb1", "--population", 8,
                          "--generations", 2, "--restarts", 1, "--comparison", "no", "--out", "optimise")
+        two = self.case_of("double_cardan")
+        self.run_program("sweep", two, *few, "--vary", "transfer.cross_distance_mm=10:30:#3", "--output", "max:Fcs_y2_N,mean:Td", "--out", "two")
+        forces = [float(x) for x in self.column("two/sweep.csv", "max:Fcs_y2_N")]
+        self.assertAlmostEqual(forces[0] / forces[2], 3, 9)
+        self.run_program("sensitivity", two, *few, "--vary", "transfer.cross_distance_mm,transfer.phase_deg", "--output",
+                         "peak:Rcn,peak:Fcs", "--check-derivatives", "--out", "by_distance")
+        self.assertEqual(self.column("by_distance/sensitivity.csv", "found_by"), ["derivatives", "differences"] * 2)
         # A design that cannot be is one line, the others go on.
         self.run_program("sweep", walls, *few, "--vary", "transfer.kind=gear,pistons", "--output", "mean:Td", "--out", "kinds")
         reasons = self.column("kinds/sweep.csv", "reason")
@@ -185,7 +201,7 @@ class TransferTest(ProgramTest):
 
     def test_trajectories_of_every_transfer_are_compared(self):
         """A pump without a gear has an empty column Rcs_z4_N: no reason to compare nothing."""
-        for name in ("constant_velocity", "cardan", "tapered_pistons"):
+        for name in ("constant_velocity", "cardan", "double_cardan", "tapered_pistons"):
             with self.subTest(name):
                 case = self.folder / f"{name}.toml"
                 case.write_text(self.case_of(name).read_text() + "\n[drive]\nkind = \"speed\"\nduration_s = 0.01\nsamples = 20\n")
@@ -210,6 +226,25 @@ class TransferTest(ProgramTest):
         walls = self.case_of("tapered_pistons")
         line = self.refused("run", walls, "--model", "multibody", "--way", "integrated", "--out", "none")
         self.assert_mentions(line, "pistons")
+        (self.folder / "plays.csv").write_text("piston,deviation_um\n1,20\n3,0\n2,-15\n4,5\n5,0\n6,0\n7,-1\n")
+        own = ("--set", f'transfer.clearance_deviation_file="{self.folder / "plays.csv"}"')
+        self.run_program("compare", walls, *FEW, *own, "--out", "own")
+        inputs = json.loads((self.folder / "own/report.json").read_text())
+        self.assertIn("plays.csv", json.dumps(inputs["inputs"] if "inputs" in inputs else inputs))
+        self.run_program("simulate", walls, *own, "--set", "drive.kind=speed", "--set", "drive.duration_s=0.005", "--set", "drive.samples=10",
+                         "--set", "block.axial_inertia_kg_mm2=2000", "--out", "moving")
+        line = self.refused("simulate", self.case_of("tapered_pistons_oil"), "--set",
+                            f'transfer.clearance_deviation_file="{self.folder / "plays.csv"}"', "--steady", "--out", "none")
+        self.assert_mentions(line, "--steady", "clearance_deviation_file")
+        line = self.refused("simulate", self.case_of("rated_hydraulic"), "--set", "transfer.kind=cardan", "--set", "pump.tilt_deg=20", "--set",
+                            "pump.bore_circle_radius_mm=24.17", "--set", "drive.kind=speed", "--steady", "--out", "none")
+        self.assert_mentions(line, "--steady", 'kind = "cardan"')
+        line = self.refused("rattle", walls, *own, "--set", "block.axial_inertia_kg_mm2=2000", "--speeds", "500", "--delivery-bar", "150",
+                            "--out", "none")
+        self.assert_mentions(line, "clearance_deviation_file", "rattle")
+        (self.folder / "plays.csv").write_text("piston,deviation_um\n1,20\n2,0\n2,-15\n4,5\n5,0\n6,0\n7,-1\n")
+        line = self.refused("run", walls, *FEW, *own, "--model", "analytic", "--out", "none")
+        self.assert_mentions(line, "plays.csv:4", "piston = 2")
         line = self.refused("run", self.case_of("rated_hydraulic"), "--model", "analytic", "--set", "transfer.kind=cardan", "--out", "none")
         self.assert_mentions(line, "[pressure] kind", "cardan")
 

@@ -99,6 +99,8 @@ BatchJob::Block block_of(TransferKind transfer) {
       return BatchJob::Block::joint;
     case TransferKind::cardan:
       return BatchJob::Block::cardan;
+    case TransferKind::double_cardan:
+      return BatchJob::Block::double_cardan;
     case TransferKind::gear:
     case TransferKind::pistons:
       break;
@@ -179,13 +181,16 @@ void run_job(const PreparedPump& pump, const double* pumps, const ChannelLayout&
   job.stream = streams(instants, outputs);
   job.bodies = std::any_of(bodies, outputs.end(), [](const double* p) { return p != nullptr; });
   job.outputs = outputs.data();
-  if (layout.has(Quantity::TcsJoint) && outputs.size() > layout.TcsJoint(2)) {
-    const auto first = outputs.begin() + static_cast<std::ptrdiff_t>(layout.TcsJoint(0));
-    if (std::any_of(first, first + 3, [](const double* p) { return p != nullptr; })) {
-      job.common.couple_column = static_cast<int>(layout.TcsJoint(0));
-      job.stream = false;  // lines have room for reactions alone
-    }
-  }
+  // What a joint exerts stands behind the reactions of every transfer.
+  const auto ask = [&](std::size_t column, int& of_job) {
+    if (outputs.size() < column + 3) return;
+    const auto first = outputs.begin() + static_cast<std::ptrdiff_t>(column);
+    if (std::all_of(first, first + 3, [](const double* p) { return p == nullptr; })) return;
+    of_job = static_cast<int>(column);
+    job.stream = false;  // lines have room for reactions alone
+  };
+  if (layout.has(Quantity::TcsJoint)) ask(layout.TcsJoint(0), job.common.couple_column);
+  if (layout.has(Quantity::Fcs)) ask(layout.Fcs(0), job.common.force_column);
   if (!pump.has_tooth_force() && outputs[layout.Rcs()] != nullptr)
     std::fill_n(outputs[layout.Rcs()], instants.count, not_computed());
   BatchKernel* const run = kernel(options.instruction_set).run;

@@ -21,7 +21,7 @@ struct BatchJob {
   const double* pumps;                    // one array per number, pumps_stride apart
   std::size_t pumps_stride;
   Column theta, omega, omega_dot, suction, delivery;
-  enum class Block { locked, free, joint, cardan } block;  // of a free one:
+  enum class Block { locked, free, joint, cardan, double_cardan } block;  // of a free one:
   Column psi, block_omega, block_omega_dot;
   const Column* chamber_pressure;
   double* const* outputs;

@@ -19,8 +19,6 @@ constexpr std::size_t kDoublesPerLine = 64 / sizeof(double);
 constexpr std::size_t kMaxReactions = 5 * kMaxPistons + 12;
 template <template <class> class Turning>
 inline constexpr bool kFree = std::is_same_v<Turning<double>, closed_form::FreeState<double>>;
-template <template <class> class Turning>
-inline constexpr bool kCardan = std::is_same_v<Turning<double>, closed_form::CardanState<double>>;
 
 template <class Real>
 struct Lanes {
@@ -48,7 +46,8 @@ struct Lanes {
 };
 
 // `used` lanes from instant `at` on; results to put(column, value). Turning: State of one lane, or
-// FreeState where the block moves on its own, JointState or CardanState where a joint turns it.
+// FreeState where the block moves on its own, JointState, CardanState or DoubleCardanState where a
+// joint turns it.
 template <class Real, template <class> class Turning, class Par, class Put>
 BENTAXIS_INLINE void evaluate_lanes(const BatchJob& job, const closed_form::Pump<Par>& pump,
                                     std::size_t at, std::size_t used, const Put& put) {
@@ -67,7 +66,7 @@ BENTAXIS_INLINE void evaluate_lanes(const BatchJob& job, const closed_form::Pump
     state.block_omega = L::load(job.block_omega, at, used);
     state.block_omega_dot = L::load(job.block_omega_dot, at, used);
   }
-  if constexpr (kCardan<Turning>) closed_form::turn_block(pump.joint, state);
+  closed_form::turn_block(pump.joint, state);
   closed_form::reactions<Real>(
       job.common, pump, state, job.bodies,
       [&](int k) { return L::load(job.chamber_pressure[k], at, used); }, put);
@@ -199,6 +198,8 @@ void run_batch(const BatchJob& job, std::size_t begin, std::size_t end) {
       return run_turning<Real, closed_form::JointState>(job, begin, end);
     case BatchJob::Block::cardan:
       return run_turning<Real, closed_form::CardanState>(job, begin, end);
+    case BatchJob::Block::double_cardan:
+      return run_turning<Real, closed_form::DoubleCardanState>(job, begin, end);
     case BatchJob::Block::locked:
       return run_turning<Real, closed_form::State>(job, begin, end);
   }
@@ -303,6 +304,9 @@ void tally_batch(const BatchJob& job, const BatchTally& tally, std::size_t begin
       break;
     case BatchJob::Block::cardan:
       tally_turning<Real, closed_form::CardanState>(job, tally, begin, end);
+      break;
+    case BatchJob::Block::double_cardan:
+      tally_turning<Real, closed_form::DoubleCardanState>(job, tally, begin, end);
       break;
     case BatchJob::Block::locked:
       tally_turning<Real, closed_form::State>(job, tally, begin, end);

@@ -12,6 +12,8 @@ void prepare(const RawPump<T>& pump, JointNumbers<T>& p) {
   const T half = pump.geometry.tilt / 2;
   const T sin_half = sin(half);
   p.tan_half = tan(half);
+  p.force_per_torque =
+      pump.transfer.cross_distance > 0 ? p.tan_half / pump.transfer.cross_distance : T(0);
   p.sine = sin(pump.geometry.tilt);
   p.cosine = cos(pump.geometry.tilt);
   p.versine = 2 * sin_half * sin_half;

@@ -1,6 +1,6 @@
-// A joint between shaft and block: an ideal constant-velocity joint or one universal joint. It
-// prescribes how the block turns and carries it round by a pure couple, which does no work. docs/
-// transfer.md.
+// A joint between shaft and block: an ideal constant-velocity joint, one universal joint or two. It
+// prescribes how the block turns and carries it round by a couple, beside which two universal
+// joints exert a force at O2. Neither does work. docs/transfer.md.
 #pragma once
 
 #include "bentaxis/pump/parameters.h"
@@ -14,6 +14,7 @@ namespace bentaxis::analytic::closed_form {
 template <class T>
 struct JointNumbers {
   T tan_half;               // of alpha / 2
+  T force_per_torque;       // tan(alpha / 2) / d of two universal joints; 0 without them
   T sine, cosine, versine;  // sin(alpha), cos(alpha), 1 - cos(alpha)
   T phase_sine, phase_cosine;
 };
@@ -32,7 +33,21 @@ struct CardanState : FreeState<Real> {
   Real inverse_q;             // 1 / (1 - sin(alpha)^2 sin(t)^2)
 };
 
-/// Turns the block of a state whose shaft is known.
+/// Instant of a block that two universal joints turn as the shaft (T13).
+template <class Real>
+struct DoubleCardanState : State<Real> {
+  Real arm_sine, arm_cosine;  // of t
+};
+
+/// Turns the block of a state whose shaft is known, as far as it does not turn as the shaft, and
+/// the arms of its joint.
+template <class Par, class Turning>
+BENTAXIS_INLINE void turn_block(const JointNumbers<Par>&, Turning&) {}
+template <class Par, class Real>
+BENTAXIS_INLINE void turn_block(const JointNumbers<Par>& p, DoubleCardanState<Real>& t) {
+  t.arm_sine = t.sine * p.phase_cosine - t.cosine * p.phase_sine;
+  t.arm_cosine = t.cosine * p.phase_cosine + t.sine * p.phase_sine;
+}
 template <class Par, class Real>
 BENTAXIS_INLINE void turn_block(const JointNumbers<Par>& p, CardanState<Real>& t) {
   const Real s = t.sine * p.phase_cosine - t.cosine * p.phase_sine;
@@ -74,6 +89,16 @@ BENTAXIS_INLINE Couple<Real> couple(const JointNumbers<Par>& p, const CardanStat
   const Real x = p.sine * t.arm_sine * t.arm_cosine * share;
   return {{-x, -(p.sine * p.cosine * t.arm_sine * t.arm_sine * share), torque},
           {x, -(p.sine * t.arm_cosine * t.arm_cosine * share), -(p.cosine * share)}};
+}
+
+/// Force at O2 on the block, in S2, beside the couple of two universal joints with `torque` about
+/// z2 (T14).
+template <class Par, class Real>
+BENTAXIS_INLINE Vec3<Real> side_force(const JointNumbers<Par>& p, const DoubleCardanState<Real>& t,
+                                      const Real& torque) {
+  const Real size = p.force_per_torque * torque;
+  const Real along = size * t.arm_sine * t.arm_cosine;
+  return {-(size * t.arm_sine * t.arm_sine), along, p.tan_half * along};
 }
 
 }  // namespace bentaxis::analytic::closed_form

@@ -39,7 +39,14 @@ struct Common {
   TransferKind transfer = TransferKind::gear;
   /// First columns of what the transfer carries, beyond the reactions that every pump has; -1: not
   /// asked for.
-  int couple_column = -1, wall_column = -1, block_torque_column = -1;
+  int couple_column = -1, force_column = -1, wall_column = -1, block_torque_column = -1;
+  /// Clearance of each piston, m, where they differ; null: that of the pump.
+  const double* clearances = nullptr;
+
+  template <class Par>
+  BENTAXIS_INLINE Par clearance(const WallNumbers<Par>& wall, int k) const {
+    return clearances == nullptr ? wall.clearance : Par(clearances[k]);
+  }
 };
 
 }  // namespace bentaxis::analytic::closed_form

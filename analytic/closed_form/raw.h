@@ -31,7 +31,7 @@ struct RawPump {
     T pitch_diameter, pressure_angle;
   } gear;
   struct {
-    T phase;
+    T phase, cross_distance;
     struct {
       T from_joint, clearance, stiffness, exponent, dissipation;
     } wall;
@@ -90,7 +90,9 @@ inline RawPump<double> raw(const PumpParameters& p) {
   return {
       .geometry = raw(p.geometry),
       .gear = {.pitch_diameter = p.gear.pitch_diameter, .pressure_angle = p.gear.pressure_angle},
-      .transfer = {.phase = p.transfer.cardan.value_or(CardanJoint()).phase,
+      .transfer = {.phase = p.transfer.phase(),
+                   .cross_distance =
+                       p.transfer.double_cardan.value_or(DoubleCardanJoint()).cross_distance,
                    .wall = {.from_joint = wall.from_joint,
                             .clearance = wall.clearance,
                             .stiffness = wall.stiffness,

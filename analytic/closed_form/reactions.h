@@ -17,7 +17,8 @@ namespace bentaxis::analytic::closed_form {
 ///                  where the block speed is imposed
 /// @param bodies    false: pistons only
 /// @param t         what the transfer constrains: State of a block that a gear locks to the shaft,
-///                  FreeState of one that moves on its own, JointState, CardanState, or WallState
+///                  FreeState of one that moves on its own, JointState, CardanState,
+///                  DoubleCardanState, or WallState
 template <class Real, class Par, class Turning, class Pressure, class Put>
 BENTAXIS_INLINE void reactions(const Common& common, const Pump<Par>& p, const Turning& t,
                                bool bodies, const Pressure& pressure, const Put& put) {
@@ -37,7 +38,7 @@ BENTAXIS_INLINE void reactions(const Common& common, const Pump<Par>& p, const T
         friction_force(common.friction, p.friction, m.ring_velocity(t.rate()), t.omega);
     PistonForces<Real> f = piston_forces(p.piston, m, t.rate(), t.rate_dot(), friction, chamber);
     if constexpr (std::is_same_v<Turning, WallState<Real>>) {
-      const WallApproach<Real> at = wall_approach(p.wall, m);
+      const WallApproach<Real> at = wall_approach(p.wall, m, common.clearance(p.wall, k));
       const Real wall = wall_force(p.wall, at, t.mode(k));
       if (common.wall_column >= 0) {
         put(common.wall_column + 2 * k, wall * at.x);

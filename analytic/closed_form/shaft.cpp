@@ -17,6 +17,7 @@ void prepare(const RawPump<T>& pump, const FrameNumbers<T>& frame, ShaftNumbers<
   p.inverse_torque_factor = 1 / pump.friction.shaft_torque_factor;
   p.tapered_z = pump.bearings.tapered_z;
   p.inverse_bearing_distance = 1 / (pump.bearings.cylindrical_z - pump.bearings.tapered_z);
+  p.axis_offset = pump.geometry.axis_offset;
 }
 template void prepare(const RawPump<double>& pump, const FrameNumbers<double>& frame,
                       ShaftNumbers<double>& p);

@@ -14,6 +14,7 @@ struct ShaftNumbers {
   T force_y, force_z, moment_x;  // weight and spring, about O1, in S1
   T inertia, viscous, inverse_torque_factor;
   T tapered_z, inverse_bearing_distance;
+  T axis_offset;  // b: z1 of O2
 };
 
 template <class T>

@@ -49,6 +49,15 @@ BENTAXIS_INLINE ByGear<Real> carry(const Common& common, const Pump<Par>& p, con
   return {tooth};
 }
 
+/// Puts the components of a vector from a column on, where it is asked for.
+template <class Real, class Put>
+BENTAXIS_INLINE void put_from(const Put& put, int column, const Vec3<Real>& v) {
+  if (column < 0) return;
+  put(column, v.x);
+  put(column + 1, v.y);
+  put(column + 2, v.z);
+}
+
 /// The couple of a joint.
 template <class Real>
 struct ByJoint {
@@ -67,11 +76,7 @@ BENTAXIS_INLINE ByJoint<Real> carry_by_joint(const Common& common, const Pump<Pa
   const Couple<Real> joint = couple(p.joint, t, torque);
   balance.moment_x = balance.moment_x + joint.on_block.x;
   balance.moment_y = balance.moment_y + joint.on_block.y;
-  if (common.couple_column >= 0) {
-    put(common.couple_column, joint.on_block.x);
-    put(common.couple_column + 1, joint.on_block.y);
-    put(common.couple_column + 2, joint.on_block.z);
-  }
+  put_from(put, common.couple_column, joint.on_block);
   return {joint};
 }
 template <class Real, class Par, class Put>
@@ -85,6 +90,32 @@ BENTAXIS_INLINE ByJoint<Real> carry(const Common& common, const Pump<Par>& p,
                                     const CardanState<Real>& t, const BlockLoad<Real>& on_block,
                                     BlockBalance<Real>& balance, const Put& put) {
   return carry_by_joint(common, p, t, on_block, balance, put);
+}
+
+/// The couple of two universal joints, and their force at O2.
+template <class Real>
+struct ByDoubleCardan {
+  Couple<Real> couple;
+  Vec3<Real> force;  // on the block, in S2
+  template <class Par>
+  BENTAXIS_INLINE ToothForce<Real> on_shaft(const Pump<Par>& p) const {
+    const Vec3<Real> f = to_s1(p.frame, Vec3<Real>{-force.x, -force.y, -force.z});
+    // O2 lies on z1.
+    const Vec3<Real> moment = {couple.on_shaft.x - p.shaft.axis_offset * f.y,
+                               couple.on_shaft.y + p.shaft.axis_offset * f.x, couple.on_shaft.z};
+    return {f, moment};
+  }
+};
+template <class Real, class Par, class Put>
+BENTAXIS_INLINE ByDoubleCardan<Real> carry(const Common& common, const Pump<Par>& p,
+                                           const DoubleCardanState<Real>& t,
+                                           const BlockLoad<Real>& on_block,
+                                           BlockBalance<Real>& balance, const Put& put) {
+  const ByJoint<Real> joint = carry_by_joint(common, p, t, on_block, balance, put);
+  const Vec3<Real> force = side_force(p.joint, t, joint.couple.on_block.z);
+  balance.force = balance.force + force;
+  put_from(put, common.force_column, force);
+  return {joint.couple, force};
 }
 
 /// Walls of bores: what they do is among the loads. What is left of the block's balance comes from

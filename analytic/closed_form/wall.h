@@ -16,7 +16,7 @@ struct WallNumbers {
   T share;                             // w = 1 - l_c / b1
   T along;                             // l_c / b1: from A to D along AB
   T on_bore;                           // l_c / s_C: part of Rw that Rc balances; Rs the rest
-  T clearance;                         // h
+  T clearance;                         // h, where it is that of all pistons
   T stiffness, exponent, dissipation;  // k x0, e, c_d; force k x0 (x/x0)^e (1 + c_d x')
 };
 
@@ -45,15 +45,17 @@ struct WallApproach {
   Real distance, rate;
   Real x, y;  // direction of the wall's force on the piston, in S2: a unit vector
 };
+/// @param clearance  of this piston
 template <class Par, class Real>
-WallApproach<Real> wall_approach(const WallNumbers<Par>& p, const PistonMotion<Real>& m) {
+WallApproach<Real> wall_approach(const WallNumbers<Par>& p, const PistonMotion<Real>& m,
+                                 const Par& clearance) {
   // B - A across the bore is -u.
   const Real off = Math<Real>::root(m.axis.x * m.axis.x + m.axis.y * m.axis.y);
   const bool centred = !(off > 0);
   const Real inverse = centred ? Real(0) : 1 / off;
   const Real x = m.axis.x * inverse;
   const Real y = m.axis.y * inverse;
-  return {p.share * off - p.clearance, p.share * (x * m.axis_first.x + y * m.axis_first.y), x, y};
+  return {p.share * off - clearance, p.share * (x * m.axis_first.x + y * m.axis_first.y), x, y};
 }
 
 /// Spring and damping of a wall, W in a step of the law's two factors.

@@ -15,8 +15,9 @@ void Walls::find(const Instant& instant, std::vector<WallPath>& paths) const {
       const auto m = closed_form::piston_motion(p.frame, p.piston, state,
                                                 state.sine * cosine - state.cosine * sine,
                                                 state.cosine * cosine + state.sine * sine);
-      const auto at = closed_form::wall_approach(p.wall, m);
-      const double off = (at.distance + p.wall.clearance) / p.wall.share;
+      const double clearance = pump_.clearance(k);
+      const auto at = closed_form::wall_approach(p.wall, m, clearance);
+      const double off = (at.distance + clearance) / p.wall.share;
       const double off_rate = at.rate / p.wall.share;
       // off^2 = x^2 + y^2, twice.
       const double speeds = m.axis_first.x * m.axis_first.x + m.axis_first.y * m.axis_first.y;

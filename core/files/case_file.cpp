@@ -209,6 +209,11 @@ class CaseReader {
       read_tooth_errors(file, *field.teeth(result_));
       return;
     }
+    if (field.walls != nullptr) {
+      field.walls(result_)->deviation =
+          read_clearance_deviations(file, result_.pump.geometry.pistons);
+      return;
+    }
     result_.pressure.curve = read_pressure_curve(file);
     PressureTrace{result_.pressure};  // refuses a curve that cannot be a periodic spline
   }

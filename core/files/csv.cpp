@@ -349,6 +349,27 @@ void read_tooth_errors(const std::filesystem::path& file, ToothData& teeth) {
   }
 }
 
+std::vector<double> read_clearance_deviations(const std::filesystem::path& file, int pistons) {
+  const NumericTable table = read_numeric_csv(file);
+  if (table.header != std::vector<std::string>{"piston", "deviation_um"})
+    throw InputError(file.string() + ":1: header must be piston,deviation_um");
+  if (table.rows.size() != static_cast<std::size_t>(pistons))
+    throw InputError(file.string() + ": has " + std::to_string(table.rows.size()) +
+                     " pistons, must be [pump] pistons = " + std::to_string(pistons));
+  std::vector<double> deviation(table.rows.size());
+  std::vector<bool> given(table.rows.size());
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const double number = table.rows[i][0];
+    if (!(number >= 1 && number <= pistons) || number != std::floor(number))
+      refuse_value(file, table, i, 0, "a whole number in [1, " + std::to_string(pistons) + "]");
+    const auto piston = static_cast<std::size_t>(number) - 1;
+    if (given[piston]) refuse_value(file, table, i, 0, "a piston that is not given before");
+    given[piston] = true;
+    deviation[piston] = table.rows[i][1] / 1e6;
+  }
+  return deviation;
+}
+
 // The columns that say how shaft and block move, in the order of their use.
 constexpr const char* kMotionColumns[] = {"theta_deg", "psi_deg",          "theta_rpm",
                                           "psi_rpm",   "theta_rad_per_s2", "psi_rad_per_s2"};
@@ -418,9 +439,9 @@ States states_of(const NumericTable& table, const std::filesystem::path& file,
       const AxisMotion block = joint_motion(
           the_case.pump, {radians(turned), state.shaft_speed, state.shaft_acceleration});
       MotionState law = state;
-      law.psi_deg = the_case.pump.transfer.kind == TransferKind::cardan
-                        ? state.theta_deg + (block.angle - radians(turned)) / kRadPerDegree
-                        : state.theta_deg;
+      law.psi_deg = the_case.pump.transfer.is_even()
+                        ? state.theta_deg
+                        : state.theta_deg + (block.angle - radians(turned)) / kRadPerDegree;
       law.block_speed = block.speed;
       law.block_acceleration = block.acceleration;
       constexpr double kMatch = 1e-9;  // deg, and of the shaft's rates

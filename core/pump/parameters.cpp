@@ -44,8 +44,8 @@ AssemblyMargin assembly_margin(const Geometry& g) {
 
 // From a.a' = 0 of the joint's arms.
 double block_lead(const PumpParameters& pump, double theta) {
-  if (pump.transfer.kind != TransferKind::cardan) return 0;
-  const double t = theta - pump.transfer.cardan.value_or(CardanJoint()).phase;
+  if (!pump.transfer.is_uneven_joint()) return 0;
+  const double t = theta - pump.transfer.phase();
   const double c = std::cos(pump.geometry.tilt);
   return std::atan2((c - 1) * std::sin(t) * std::cos(t),
                     std::cos(t) * std::cos(t) + c * std::sin(t) * std::sin(t));
@@ -53,7 +53,7 @@ double block_lead(const PumpParameters& pump, double theta) {
 
 AssemblyMargin assembly_margin(const PumpParameters& pump) {
   const Geometry& g = pump.geometry;
-  if (pump.transfer.kind != TransferKind::cardan) return assembly_margin(g);
+  if (!pump.transfer.is_uneven_joint()) return assembly_margin(g);
   // Smooth over the turn: the worst of many angles, and from there the vertex of a parabola.
   constexpr int kAngles = 3600;
   const double step = 2 * kPi / kAngles;

@@ -5,8 +5,8 @@
 namespace bentaxis {
 
 AxisMotion joint_motion(const PumpParameters& pump, const AxisMotion& shaft) {
-  if (pump.transfer.kind != TransferKind::cardan) return shaft;
-  const double t = shaft.angle - pump.transfer.cardan.value_or(CardanJoint()).phase;
+  if (!pump.transfer.is_uneven_joint()) return shaft;
+  const double t = shaft.angle - pump.transfer.phase();
   const double c = std::cos(pump.geometry.tilt), s = std::sin(pump.geometry.tilt);
   const double sin_t = std::sin(t), cos_t = std::cos(t);
   const double q = 1 - s * s * sin_t * sin_t;

@@ -29,8 +29,7 @@ void require_constant_speed(const Case& the_case) {
                      "\" at constant speed");
   };
   const bool pistons = kind == TransferKind::pistons;
-  if ((pistons || kind == TransferKind::cardan) &&
-      the_case.pressure.kind == PressureKind::hydraulic)
+  if (!the_case.pump.transfer.is_even() && the_case.pressure.kind == PressureKind::hydraulic)
     refuse("kind = \"hydraulic\"", "\"ideal\" or \"curve\"");
   if (pistons && the_case.pressure.kind == PressureKind::ideal &&
       the_case.pressure.transition_deg == 0)

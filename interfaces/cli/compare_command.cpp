@@ -1,8 +1,8 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -62,18 +62,18 @@ void refuse_engine_options_without_effect(const Options& options) {
 
 // What drives the block is an assumption that the case file says too: it is read as a change of it.
 constexpr char kTransfer[] = "transfer=";
+std::string all_transfers() {
+  return kTransfer + fmt::format("{}", fmt::join(transfer_names(), "|"));
+}
 bool is_transfer(const std::string& text) { return text.starts_with(kTransfer); }
 Case read_with(CaseOption of, const std::string& option,
                const std::vector<std::string>& assumptions) {
   for (const std::string& text : assumptions) {
     if (!is_transfer(text)) continue;
     const std::string kind = text.substr(std::size(kTransfer) - 1);
-    const auto is_named = [&](TransferKind known) { return to_string(known) == kind; };
-    constexpr TransferKind kKinds[] = {TransferKind::gear, TransferKind::constant_velocity,
-                                       TransferKind::cardan, TransferKind::pistons};
-    if (std::none_of(std::begin(kKinds), std::end(kKinds), is_named))
-      throw InputError(option + " " + text +
-                       ": must be transfer=gear|constant_velocity|cardan|pistons");
+    const auto& names = transfer_names();
+    if (std::find(names.begin(), names.end(), kind) == names.end())
+      throw InputError(option + " " + text + ": must be " + all_transfers());
     of.changes.push_back("transfer.kind=" + kind);
   }
   return of.read();
@@ -210,8 +210,8 @@ Command add_compare_command(CommandParser program) {
       .option("--analytic", options->analytic,
               "assumption of the analytic model: piston_friction=on|off, "
               "inertia=lumped|real|dynamically_equivalent, gear=mesh|imposed, "
-              "flank_shape=involute|octoid, "
-              "transfer=gear|constant_velocity|cardan|pistons; overrides the case file")
+              "flank_shape=involute|octoid, " +
+                  all_transfers() + "; overrides the case file")
       .text("KEY=VALUE ..");
   command.option("--multibody", options->multibody, "the same for the multibody model")
       .text("KEY=VALUE ..");

@@ -19,9 +19,8 @@ void require_simulable(const Case& the_case, const Assumptions& assumptions) {
     throw InputError(
         "multibody model: the motion of the block is imposed, so it cannot be simulated: use gear "
         "= \"mesh\"");
-  const TransferKind transfer = the_case.pump.transfer.kind;
   const bool block_accelerates =
-      the_case.pump.block_moves_freely() || transfer == TransferKind::cardan;
+      the_case.pump.block_moves_freely() || the_case.pump.transfer.is_uneven_joint();
   const bool speed_changes = drive.kind != DriveKind::speed || !drive.curve.time.empty();
   const std::string file = the_case.file.empty() ? "" : the_case.file.string() + ": ";
   const auto need = [&](double inertia, const char* key) {

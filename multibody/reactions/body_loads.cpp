@@ -136,6 +136,10 @@ void BodyLoadReader::read_transfer(Looked& at, const TeethAction* teeth) const {
   if (pump_.joint() != nullptr) {
     block.moment("shaft", "Tcs", "about O2", bodies.block_origin, at.reactions.couple);
     shaft.moment("block", "Tcs", "about O2", bodies.block_origin, -at.reactions.couple);
+    if (pump_.pump().transfer.kind == TransferKind::double_cardan) {
+      block.force("shaft", "Fcs", "O2", bodies.block_origin, at.reactions.side_force);
+      shaft.force("block", "Fcs", "O2", bodies.block_origin, -at.reactions.side_force);
+    }
   } else if (pump_.walls() != nullptr) {
     // The walls are the pistons'. Given states need a torque from outside.
     if (pump_.block_is_imposed() && at.reactions.block_is_given)

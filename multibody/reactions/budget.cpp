@@ -47,8 +47,8 @@ namespace {
 
 // Speed of the block over that of the shaft that a joint lets through: its couple does no work.
 double block_over_shaft(const PumpSystem& pump, const State& state) {
-  return -dot(pump.joint()->unit_couple_on_shaft(state), Vec3(0, 0, 1)) /
-         dot(pump.joint()->unit_couple_on_block(state), Vec3(pump.bodies().block_frame.z()));
+  return -dot(pump.joint()->unit_on_shaft(state)[0], Vec3(0, 0, 1)) /
+         dot(pump.joint()->unit_on_block(state)[0], Vec3(pump.bodies().block_frame.z()));
 }
 
 }  // namespace
@@ -138,6 +138,7 @@ Budget budget_of(PumpSystem& pump, Placement& placement, const Reactions& reacti
     budget.pressing += dot(z2, vector_of(pump.bevel()->action(state).force));
   } else if (pump.joint() != nullptr) {
     budget.carrying_torque = dot(z2, reactions.couple);
+    budget.pressing += dot(z2, reactions.side_force);
   } else if (pump.has_gear()) {
     const GearMesh& gear = pump.gear();
     budget.carrying_torque =

@@ -63,6 +63,10 @@ void read_transfer_channels(const PumpSystem& pump, const Reactions& reactions,
     const Vec3 couple = ~s2 * reactions.couple;
     for (int axis = 0; axis < 3; ++axis) values[layout.TcsJoint(axis)] = couple[axis];
   }
+  if (layout.has(Quantity::Fcs)) {
+    const Vec3 force = ~s2 * reactions.side_force;
+    for (int axis = 0; axis < 3; ++axis) values[layout.Fcs(axis)] = force[axis];
+  }
   if (layout.has(Quantity::psi)) values[layout.psi()] = motion.block.angle;
   if (layout.has(Quantity::psi_speed)) values[layout.psi_speed()] = motion.block.speed;
   if (layout.has(Quantity::psi_acceleration))

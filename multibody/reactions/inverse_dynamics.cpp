@@ -71,12 +71,16 @@ void InverseDynamics::solve_block_and_shaft(Reactions& reactions, const Loads& l
   }
   reactions.imposed = 0;
   if (pump_.joint() != nullptr) {
-    // Its equation gives the direction of its couple, the block's balance about z2 the size.
-    const Vec3 on_block = pump_.joint()->unit_couple_on_block(state);
-    const double size = dot(hold[0], z2) / dot(on_block, z2);
-    reactions.couple = size * on_block;
+    // Its equation gives the directions of couple and force, the block's balance about z2 the size.
+    const SpatialVec on_block = pump_.joint()->unit_on_block(state);
+    const SpatialVec unit_on_shaft = pump_.joint()->unit_on_shaft(state);
+    const double size = dot(hold[0], z2) / dot(on_block[0], z2);
+    reactions.couple = size * on_block[0];
+    reactions.side_force = size * on_block[1];
     hold[0] -= reactions.couple;
-    on_shaft[0] -= size * pump_.joint()->unit_couple_on_shaft(state);
+    hold[1] -= reactions.side_force;
+    on_shaft[0] -= size * (unit_on_shaft[0] + (o2 - c1) % unit_on_shaft[1]);
+    on_shaft[1] -= size * unit_on_shaft[1];
   } else if (pump_.bevel() != nullptr) {
     // Their forces are among the loads. What is left about z2 they do not give.
     reactions.imposed = dot(hold[0], z2);

@@ -73,7 +73,9 @@ double power_balance(const PumpSystem& pump, const State& state, const Reactions
     sum -= reactions.tooth * dot(reactions.tooth_line, sliding_at_mesh(pump, state));
   else if (pump.joint() != nullptr)
     sum += dot(reactions.couple, bodies.block.getBodyAngularVelocity(state) -
-                                     bodies.shaft.getBodyAngularVelocity(state));
+                                     bodies.shaft.getBodyAngularVelocity(state)) +
+           dot(reactions.side_force, velocity_at(state, bodies.block, bodies.block_origin) -
+                                         velocity_at(state, bodies.shaft, bodies.block_origin));
   else if (pump.block_is_imposed())
     sum += reactions.imposed * bodies.block.getOneU(state, 0);
   return sum + ring_power(pump, reactions, state);

@@ -53,7 +53,11 @@ void reactions_from_multipliers(const PumpSystem& pump, const State& state, Reac
     reactions.tooth_line =
         pump.has_rigid_gear() ? pump.gear().line() : pump.gear().line_for(reactions.tooth);
   }
-  if (pump.joint() != nullptr) reactions.couple = pump.joint()->couple_on_block(state);
+  if (pump.joint() != nullptr) {
+    const SpatialVec carried = pump.joint()->on_block(state);
+    reactions.couple = carried[0];
+    reactions.side_force = carried[1];
+  }
   reactions.imposed = pump.block_is_imposed() ? pump.imposed_block_torque(state) : 0;
 }
 

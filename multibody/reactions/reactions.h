@@ -27,7 +27,8 @@ struct Reactions {
   double tooth = 0;        ///< tooth force on the block along tooth_line, N; of bevel teeth the
                            ///< torque that the block's motion takes over GearMesh::arm()
   SimTK::Vec3 tooth_line;  ///< of the flank that carries it
-  SimTK::Vec3 couple = SimTK::Vec3(0);  ///< on the block by a joint, Nm
+  SimTK::Vec3 couple = SimTK::Vec3(0);      ///< on the block by a joint, about O2, Nm
+  SimTK::Vec3 side_force = SimTK::Vec3(0);  ///< on the block by a joint, at O2
   double imposed = 0;  ///< torque about z2 that an imposed motion applies to the block; beside
                        ///< bevel teeth what they do not give of what its motion takes
   /// Whether `imposed` is what given motion needs; false where the motion was chosen so that it

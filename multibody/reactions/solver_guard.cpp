@@ -112,6 +112,7 @@ double force_difference(const PumpSystem& pump, const Reactions& reactions,
     look({arm * reactions.drive, reactions.tooth, arm * reactions.imposed},
          {arm * others.drive, others.tooth, arm * others.imposed});
     look(arm * reactions.couple, arm * others.couple);
+    look(reactions.side_force, others.side_force);
   }
   return off == 0 ? 0 : off / largest;
 }

@@ -50,13 +50,15 @@ BoreWalls::BoreWalls(SimTK::GeneralForceSubsystem& forces, const PumpParameters&
                      const PumpBodies& bodies, const Pistons& pistons, const WallSetting& setting)
     : law_(*pump.transfer.wall),
       bore_radius_(pump.geometry.bore_diameter / 2),
-      sphere_radius_(bore_radius_ - law_.clearance),
       arm_(pump.geometry.bore_circle_radius * (1 - law_.from_joint / pump.geometry.piston_length)),
       block_(bodies.block),
       pistons_(bodies.pistons),
       bore_points_(pistons.bore_points),
       setting_(setting),
-      force_(SimTK::Force::Custom(forces, new Element(*this))) {}
+      force_(SimTK::Force::Custom(forces, new Element(*this))) {
+  for (std::size_t k = 0; k < pistons_.size(); ++k)
+    sphere_radii_.push_back(bore_radius_ - law_.clearance_of(k));
+}
 
 WallTouch BoreWalls::touch(const State& state, std::size_t piston) const {
   const SimTK::MobilizedBody& body = pistons_[piston];
@@ -67,7 +69,7 @@ WallTouch BoreWalls::touch(const State& state, std::size_t piston) const {
   const Vec3 seen = block_.findStationAtGroundPoint(state, touch.centre);
   const Vec3 off(seen[0] - bore_points_[piston][0], seen[1] - bore_points_[piston][1], 0);
   const double distance = off.norm();
-  touch.approach = distance + sphere_radius_ - bore_radius_;
+  touch.approach = distance + sphere_radii_[piston] - bore_radius_;
   if (!(distance > 0)) return touch;  // no side is nearer than another
   const Vec3 outward = off / distance;
   touch.outward = block_.expressVectorInGroundFrame(state, outward);

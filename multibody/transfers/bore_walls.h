@@ -34,7 +34,7 @@ struct WallTouch {
 };
 
 /// The walls as a force element. Where a piston touches its bore it is a sphere about D on its
-/// axis, whose radius is smaller than the bore's by the clearance; the wall is a cylinder in the
+/// axis, whose radius is smaller than the bore's by its clearance; the wall is a cylinder in the
 /// block. The element finds where the two surfaces are deepest in each other, and how fast they
 /// approach, from the places and velocities of the bodies. Its force acts along the common normal,
 /// which passes through D. There is no friction.
@@ -67,8 +67,9 @@ class BoreWalls {
   double force_of(const WallTouch& touch, std::size_t piston) const;
 
   WallContact law_;
-  double bore_radius_, sphere_radius_;
-  double arm_;  // m, of a wall's force about the block's axis, per force
+  double bore_radius_;
+  std::vector<double> sphere_radii_;  // m, one per piston
+  double arm_;                        // m, of a wall's force about the block's axis, per force
   SimTK::MobilizedBody block_;
   std::vector<SimTK::MobilizedBody> pistons_;
   std::vector<SimTK::Vec3> bore_points_;

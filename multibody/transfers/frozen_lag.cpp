@@ -88,7 +88,9 @@ FreePlay free_play(const PumpParameters& pump, double theta) {
   FreePlay play{-kInfinity, kInfinity};
   const auto refuse = [&](const std::string& why) {
     throw InputError(
-        "multibody model: [transfer] clearance_mm = " + number_text(wall.clearance * 1e3) + ": " +
+        "multibody model: [transfer] clearance_mm = " + number_text(wall.clearance * 1e3) +
+        (wall.deviation.empty() ? ": "
+                                : " with " + wall.deviation_file.filename().string() + ": ") +
         why + " at theta = " + number_text(theta / kRadPerDegree) + " deg");
   };
   for (int k = 0; k < g.pistons; ++k) {
@@ -97,7 +99,8 @@ FreePlay free_play(const PumpParameters& pump, double theta) {
     const Vec3 seen = ~frame * joint;  // along z2: its x and y count
     const auto gap_at = [&](double psi_k) {
       const Vec3 bore = Rotation(psi_k, SimTK::ZAxis) * Vec3(0, g.bore_circle_radius, 0);
-      return wall.clearance - share * (seen - bore).getSubVec<2>(0).norm();
+      return wall.clearance_of(static_cast<std::size_t>(k)) -
+             share * (seen - bore).getSubVec<2>(0).norm();
     };
     // The bore's axis is nearest where it lies on the same radius, and farthest opposite.
     const double nearest = std::atan2(-seen[0], seen[1]);

@@ -8,8 +8,8 @@
 
 namespace bentaxis::multibody {
 
-/// A constant-velocity or universal joint between shaft and block, as one equation between the
-/// rotations of the two bodies. What it carries is the couple that Simbody finds with the equation.
+/// A constant-velocity joint, or one or two universal joints, between shaft and block, as one
+/// equation between the two bodies. What it carries is what Simbody finds with the equation.
 ///
 /// - Constant velocity: the bodies are each other's mirror image in the plane that bisects their
 ///   axes. Their axes across then keep xs.yb = ys.xb, whatever way the bodies lie. No direction of
@@ -17,24 +17,34 @@ namespace bentaxis::multibody {
 /// - Universal: the cross holds the arm of the shaft's fork at a right angle to that of the block's
 ///   fork. This is Simbody's own constraint of a constant angle. The cross has no mass, and no body
 ///   stands for it: tests/simbody_conventions_test.cpp holds the equation to a universal mobilizer.
+/// - Double universal: the shaft between the crosses holds in each cross an arm across its own axis
+///   and across the arm of the other fork. Its two forks are parallel, so that the arms of shaft
+///   and block lie in one plane with the line of the crosses' centres. That is the equation; its
+///   gradient by places and rotations of the bodies is force and couple. The shaft between them has
+///   no mass, which no body of Simbody may lack: tests/simbody_conventions_test.cpp holds the
+///   equation to two universal mobilizers with a slider between them.
 class BlockJoint {
  public:
   /// @param pump  with a joint as its transfer
   BlockJoint(const PumpParameters& pump, SimTK::MobilizedBody& shaft, SimTK::MobilizedBody& block);
 
   void disable(SimTK::State& state) const { constraint_.disable(state); }
-  /// Couple that the joint exerts on the block, Nm in Ground; its opposite acts on the shaft.
+  /// Couple about O2, Nm, and force at O2, N, that the joint exerts on the block, in Ground; their
+  /// opposites act on the shaft.
   /// @param state  realized to Acceleration
-  SimTK::Vec3 couple_on_block(const SimTK::State& state) const;
-  /// The same for a multiplier of 1: the direction that the equation gives it, and a length.
+  SimTK::SpatialVec on_block(const SimTK::State& state) const;
+  /// The same for a multiplier of 1: the directions that the equation gives them, and their sizes.
   /// @param state  realized to Velocity
-  SimTK::Vec3 unit_couple_on_block(const SimTK::State& state) const;
-  SimTK::Vec3 unit_couple_on_shaft(const SimTK::State& state) const;
+  SimTK::SpatialVec unit_on_block(const SimTK::State& state) const;
+  SimTK::SpatialVec unit_on_shaft(const SimTK::State& state) const;
 
  private:
-  SimTK::Vec3 unit_couple(const SimTK::State& state, const SimTK::MobilizedBody& body) const;
+  SimTK::SpatialVec unit_on(const SimTK::State& state, const SimTK::MobilizedBody& body) const;
+  SimTK::SpatialVec about_centre(const SimTK::State& state, const SimTK::MobilizedBody& body,
+                                 SimTK::SpatialVec force) const;
 
   SimTK::MobilizedBody shaft_, block_;
+  SimTK::Vec3 centre_;  // O2 in Ground
   SimTK::Constraint constraint_;
 };
 

@@ -57,6 +57,18 @@ std::vector<report::CommonInput> transfer_inputs(const Case& the_case, bool moti
            "high-precision curves; a cross between two forks (universal mobilizer of Simbody); the "
            "couple does no work; free bodies of shaft and block"});
       break;
+    case TransferKind::double_cardan:
+      inputs.push_back(
+          {"double universal joint",
+           "ideal: no friction, no play, no mass of crosses and of the shaft between them, which "
+           "slides freely; both take distance of the crosses and phase from the case. The analytic "
+           "model has couple and force in closed form. The multibody model keeps the arms of both "
+           "forks in one plane with the crosses' centres, and Simbody finds motion, couple and "
+           "force",
+           "balance of the shaft between the crosses; two crosses with a slider between them "
+           "(universal mobilizers of Simbody); couple and force do no work; free bodies of shaft "
+           "and block"});
+      break;
     case TransferKind::pistons:
       inputs.push_back(
           {"law of the contact of piston and bore",
@@ -135,16 +147,17 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
   }
   if (!motion) {
     const TransferKind kind = the_case.pump.transfer.kind;
-    inputs.push_back(
-        {kind == TransferKind::cardan ? "constant speed of the shaft"
-                                      : "constant speed, equal for shaft and block (1:1)",
-         the_case.pump.gear.contact == ToothContact::teeth
-             ? "omega given; no torsion; constant lag of the teeth"
-         : kind == TransferKind::pistons ? "omega given; no torsion; frozen lag"
-         : kind == TransferKind::gear    ? "omega given; no torsion, no play in the gear"
-                                         : "omega given; no torsion, no play in the joint",
-         "not in this program: a rig. Torque-driven run: the free shaft under the "
-         "analytic torque keeps its speed"});
+    inputs.push_back({the_case.pump.transfer.is_uneven_joint()
+                          ? "constant speed of the shaft"
+                          : "constant speed, equal for shaft and block (1:1)",
+                      the_case.pump.gear.contact == ToothContact::teeth
+                          ? "omega given; no torsion; constant lag of the teeth"
+                      : kind == TransferKind::pistons ? "omega given; no torsion; frozen lag"
+                      : kind == TransferKind::gear
+                          ? "omega given; no torsion, no play in the gear"
+                          : "omega given; no torsion, no play in the joint",
+                      "not in this program: a rig. Torque-driven run: the free shaft under the "
+                      "analytic torque keeps its speed"});
     return inputs;
   }
   const DriveSpec& drive = *the_case.drive;
@@ -195,7 +208,7 @@ std::vector<report::DerivedQuantity> derived_section(const Case& the_case) {
   const analytic::DerivedQuantities derived = analytic::derived_quantities(the_case.pump);
   const double pressure = the_case.pressure.ports.delivery - the_case.pressure.ports.suction;
   const TransferKind kind = the_case.pump.transfer.kind;
-  const bool own_strokes = kind == TransferKind::cardan;
+  const bool own_strokes = the_case.pump.transfer.is_uneven_joint();
   std::vector<report::DerivedQuantity> rows = {
       {"displacement", "V", derived.displacement * 1e6, "cm3/rev",
        own_strokes ? "A times the sum of all strokes" : "N A stroke"},

@@ -121,6 +121,9 @@ std::vector<Row> transfer_figures(const Tables& tables, const PumpParameters& pu
   put(
       "side couple on the shaft, peak", "Tcs", "Nm",
       [](const auto& s) { return s.couple_on_shaft().value; }, first.couple_on_shaft().theta_deg);
+  put(
+      "side force of the joint at O2, peak", "Fcs", "N",
+      [](const auto& s) { return s.side_force().value; }, first.side_force().theta_deg);
   if (walls) {
     put("hand-overs from piston to piston per turn", "", "",
         [](const auto& s) { return static_cast<double>(s.hand_overs()); });

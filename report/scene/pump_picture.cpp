@@ -438,7 +438,22 @@ void Picture::draw_joint_at_centre() {
     v.words("constant-velocity joint", o2 - across, 0, 16, "middle small");
     return;
   }
-  const double phase = p_.transfer.cardan.value_or(CardanJoint()).phase;
+  const double phase = p_.transfer.phase();
+  if (p_.transfer.kind == TransferKind::double_cardan) {
+    // The crosses on either axis, and the shaft between them.
+    const double distance = p_.transfer.double_cardan->cross_distance;
+    const double up = -r * std::sin(phase);
+    const auto from_shaft = [&](double y) { return Point{g_.axis_offset - distance, y}; };
+    v.line("gear", from_shaft(0), from_block(distance, 0));
+    for (const double sign : {-1.0, 1.0}) {
+      v.dot("gear-point", from_shaft(sign * up), 4);
+      v.dot("gear-point", from_block(distance, sign * up), 4);
+    }
+    v.line("gear", from_shaft(-up), from_shaft(up));
+    v.line("gear", from_block(distance, -up), from_block(distance, up));
+    v.words("double universal joint", o2, 0, 16, "middle small");
+    return;
+  }
   const double psi = block_lead(p_, 0);
   const Point of_shaft{0, -r * std::sin(phase)};
   const Point of_block = from_block(0, r * std::cos(psi - phase)) - o2;
@@ -469,12 +484,18 @@ std::string Picture::transfer_words() const {
       return "constant-velocity joint at O2";
     case TransferKind::cardan:
       return fmt::format("universal joint at O2, phase {:.4g}\u00b0",
-                         p_.transfer.cardan.value_or(CardanJoint()).phase / kRadPerDegree);
+                         p_.transfer.phase() / kRadPerDegree);
+    case TransferKind::double_cardan:
+      return fmt::format("double universal joint at O2, crosses {} mm from it, phase {:.4g}\u00b0",
+                         mm_text(p_.transfer.double_cardan->cross_distance),
+                         p_.transfer.phase() / kRadPerDegree);
     case TransferKind::pistons:
       break;
   }
-  return fmt::format("D {} mm from A, clearance {} mm", mm_text(p_.transfer.wall->from_joint),
-                     mm_text(p_.transfer.wall->clearance));
+  const WallContact& wall = *p_.transfer.wall;
+  return fmt::format("D {} mm from A, clearance {} mm", mm_text(wall.from_joint),
+                     mm_text(wall.clearance)) +
+         (wall.deviation.empty() ? "" : " with deviations");
 }
 
 // S1 against z1: x1 to the right, y1 upwards, positive angles to the left.
@@ -483,8 +504,8 @@ void Picture::draw_joints() {
   v.circle("pale", {0, 0}, flange_radius());
   v.circle("joints", {0, 0}, g_.joint_circle_radius);
   if (gear_is_drawn()) v.circle("gear", {0, 0}, gear_radius());
-  if (p_.transfer.kind == TransferKind::cardan) {
-    const double phase = p_.transfer.cardan.value_or(CardanJoint()).phase;
+  if (p_.transfer.has_crosses()) {
+    const double phase = p_.transfer.phase();
     const Point arm = o_.transfer_radius() * Point{std::cos(phase), -std::sin(phase)};
     v.line("gear", -1 * arm, arm);
     for (const double sign : {-1.0, 1.0}) v.dot("gear-point", sign * arm, 4);

@@ -483,13 +483,13 @@ BodyLoadTable every(std::size_t step, const BodyLoadTable& table) {
 // Between neighbours of a path of continuous pressure lies a hundredth of it; more is a jump.
 constexpr double kPathJump = 0.1;
 
-/// Fh's point in the plate's x and y over one N-th of a turn, which all others repeat; behind a
-/// universal joint they do not.
+/// Fh's point in the plate's x and y over one N-th of a turn, which all others repeat; else over
+/// the whole turn.
 std::vector<std::vector<std::array<double, 2>>> film_path(const PumpParameters& pump,
                                                           const ResultTable& table) {
-  const bool repeats = pump.transfer.kind != TransferKind::cardan;
   const std::size_t pitch =
-      table.rows() / static_cast<std::size_t>(repeats ? pump.geometry.pistons : 1);
+      table.rows() /
+      static_cast<std::size_t>(pump.transfer.repeats_every_pitch() ? pump.geometry.pistons : 1);
   const ChannelLayout layout(pump);
   std::vector<std::array<double, 2>> points;
   double reach = 0;

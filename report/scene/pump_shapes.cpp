@@ -322,8 +322,24 @@ void Shapes::transfer() {
       shapes_.note += "; the constant-velocity joint is drawn as two bells";
       return;
     }
+    case TransferKind::double_cardan: {
+      // The arms that the forks of shaft and block hold, at the centres of their crosses.
+      const double phase = p_.transfer.phase(), c = std::cos(phase), s = std::sin(phase);
+      const double distance = p_.transfer.double_cardan->cross_distance;
+      const auto put = [&](auto& shapes, double z) {
+        shapes.push_back(
+            {report::Wire{{{-r * c, r * s, z}, {r * c, -r * s, z}}, false}, Look::gear});
+        for (const double sign : {-1.0, 1.0})
+          shapes.push_back({report::Ball{{sign * r * c, -sign * r * s, z}, thick}, Look::gear});
+      };
+      put(shapes_.shaft, g_.axis_offset - distance);
+      put(shapes_.block, distance);
+      shapes_.note +=
+          "; of the double universal joint the arms in the forks of shaft and block are drawn";
+      return;
+    }
     case TransferKind::cardan: {
-      const double phase = p_.transfer.cardan.value_or(CardanJoint()).phase;
+      const double phase = p_.transfer.phase();
       const auto arm = [&](double x, double y, double z) {
         return report::Wire{{{-r * x, -r * y, z}, {r * x, r * y, z}}, false};
       };

@@ -48,9 +48,7 @@ bool is_of_closed_form(const Variable& variable, const Case& base) {
 bool is_exact(const Variable& variable, const Case& base) {
   if (base.pump.gear.contact == ToothContact::teeth) return false;
   // Where psi differs from theta the chambers' pressures follow the block.
-  if (base.pump.transfer.kind != TransferKind::gear &&
-      base.pump.transfer.kind != TransferKind::constant_velocity)
-    return false;
+  if (!base.pump.transfer.is_even()) return false;
   // A spline through points of a computed curve is another curve.
   if (base.pressure.kind == PressureKind::hydraulic) return base.pressure.points == 0;
   return is_of_closed_form(variable, base);

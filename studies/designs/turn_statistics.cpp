@@ -46,9 +46,7 @@ bool stays_in_reach(const Family& family) {
   const Case& base = family.base();
   const auto leaves = [](const Variable& v) { return v.parameter().changes_model; };
   return base.pressure.kind != PressureKind::hydraulic &&
-         base.pump.gear.contact != ToothContact::teeth &&
-         (base.pump.transfer.kind == TransferKind::gear ||
-          base.pump.transfer.kind == TransferKind::constant_velocity) &&
+         base.pump.gear.contact != ToothContact::teeth && base.pump.transfer.is_even() &&
          std::none_of(family.variables().begin(), family.variables().end(), leaves);
 }
 

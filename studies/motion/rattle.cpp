@@ -150,6 +150,11 @@ Case rattle_case(Case the_case, double speed_rpm, double delivery_bar) {
     throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") +
                      "[transfer] kind = \"" + to_string(the_case.pump.transfer.kind) +
                      "\": must be \"gear\" or \"pistons\": a joint has no play");
+  if (the_case.pump.transfer.has_own_clearances())
+    throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") +
+                     "[transfer] clearance_deviation_file = \"" +
+                     the_case.pump.transfer.wall->deviation_file.filename().string() +
+                     "\": must be left out in a map of rattle, which takes all pistons as equal");
   the_case.operation.speed_rpm = speed_rpm;
   the_case.pressure.ports.delivery = pascals(delivery_bar);
   DriveSpec drive;

@@ -838,6 +838,14 @@ PreparedCase prepare_simulation(Case the_case, const SimulationChoice& choice,
       throw InputError(
           "--steady: with [gear] contact = \"teeth\" the period is at least one turn, but --steady "
           "searches for a period of an N-th of a turn: simulate from the start");
+    const Transfer& transfer = the_case.pump.transfer;
+    if (transfer.is_uneven_joint() || transfer.has_own_clearances())
+      throw InputError("--steady: with [transfer] " +
+                       (transfer.has_own_clearances()
+                            ? std::string("clearance_deviation_file")
+                            : "kind = \"" + to_string(transfer.kind) + "\"") +
+                       " the motion does not repeat after an N-th of a turn, a period for which "
+                       "--steady searches: simulate from the start");
     // From rest the search would have no period to begin with: it begins at the speed of
     // [operation].
     if (the_case.drive->start_speed == 0.0) the_case.drive->start_speed.reset();

@@ -305,7 +305,10 @@ bool has_real_pistons(const Facts& f) { return f.real && f.pump.piston.mass != 0
 bool has_shaft_mass(const Facts& f) { return f.pump.shaft.mass != 0; }
 bool has_block_mass(const Facts& f) { return f.pump.block.mass != 0; }
 bool has_walls(const Facts& f) { return f.walls.has_value(); }
-bool has_cardan(const Facts& f) { return f.pump.transfer.kind == TransferKind::cardan; }
+bool has_cardan(const Facts& f) { return f.pump.transfer.is_uneven_joint(); }
+bool has_double_cardan(const Facts& f) {
+  return f.pump.transfer.kind == TransferKind::double_cardan;
+}
 // Data of walls in a pump whose pistons are not meant to touch them.
 bool has_unused_walls(const Facts& f) {
   const auto& wall = f.pump.transfer.wall;
@@ -550,6 +553,9 @@ const Check kChecks[] = {
                                   "of the shaft's, and its side couple reach {:.3g} of the torque",
                                   100 * (1 / c - c), std::tan(f.g.tilt)));
      }},
+    {"cross-distance",
+     "the crosses of a double universal joint stand outside {0:g} .. {1:g} mm from O2", "transfer",
+     "cross_distance_mm", has_double_cardan},
     {"wall-clearance",
      "pistons carry the block, and the clearance leaves it no free play at some angle, or more "
      "than 5 deg of it",
@@ -610,12 +616,14 @@ const Check kChecks[] = {
        const WallContact& wall = *f.pump.transfer.wall;
        const AssemblyMargin margin = assembly_margin(f.pump);
        const double off = (1 - wall.from_joint / f.g.piston_length) * margin.longest_distance;
-       if (off <= wall.clearance) return "";
+       const double clearance = wall.smallest_clearance();
+       if (off <= clearance) return "";
        return fmt::format(
            "a piston's axis is {:.4g} mm from that of its bore at {:.4g} deg, "
-           "contact_from_joint_mm = {:.6g} from A: above clearance_mm = {:.6g}, the piston touches "
+           "contact_from_joint_mm = {:.6g} from A: above {} = {:.6g}, the piston touches "
            "its bore, and [transfer] kind = \"{}\" leaves that out",
-           mm(off), margin.theta_deg, mm(wall.from_joint), mm(wall.clearance),
+           mm(off), margin.theta_deg, mm(wall.from_joint),
+           wall.deviation.empty() ? "clearance_mm" : "the smallest clearance in mm", mm(clearance),
            to_string(f.pump.transfer.kind));
      }},
     // Bearings

@@ -53,15 +53,17 @@ TransferSummary::TransferSummary(const PumpParameters& pump, const std::vector<C
       lag_column_(missing_),
       psi_column_(missing_),
       speed_column_(missing_),
-      couple_columns_{missing_, missing_, missing_} {
+      couple_columns_{missing_, missing_, missing_},
+      force_columns_{missing_, missing_, missing_} {
   const ChannelLayout at(pump);
   if (pump.transfer.kind == TransferKind::gear) return;
   if (at.has(Quantity::lag)) lag_column_ = place(channels, at.lag());
   if (at.has(Quantity::psi)) psi_column_ = place(channels, at.psi());
   if (at.has(Quantity::psi_speed)) speed_column_ = place(channels, at.psi_speed());
-  if (at.has(Quantity::TcsJoint))
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      couple_columns_[axis] = place(channels, at.TcsJoint(axis));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (at.has(Quantity::TcsJoint)) couple_columns_[axis] = place(channels, at.TcsJoint(axis));
+    if (at.has(Quantity::Fcs)) force_columns_[axis] = place(channels, at.Fcs(axis));
+  }
   for (int k = 0; k < at.pistons(); ++k) {
     z_columns_.push_back(place(channels, at.zB(k)));
     if (at.has(Quantity::Rw))
@@ -72,8 +74,8 @@ TransferSummary::TransferSummary(const PumpParameters& pump, const std::vector<C
   if (std::any_of(wall_columns_.begin(), wall_columns_.end(),
                   [&](const auto& pair) { return absent(pair[0]) || absent(pair[1]); }))
     wall_columns_.clear();
-  if (std::any_of(couple_columns_.begin(), couple_columns_.end(), absent))
-    couple_columns_.fill(missing_);
+  for (auto* columns : {&couple_columns_, &force_columns_})
+    if (std::any_of(columns->begin(), columns->end(), absent)) columns->fill(missing_);
 }
 
 TransferSummary::TransferSummary(const PumpParameters& pump, const ResultTable& table)
@@ -114,16 +116,19 @@ void TransferSummary::add(double theta_deg, const double* values) {
     speed_.add(values[speed_column_], theta_deg);
     speed_sum_ += values[speed_column_];
   }
+  const auto larger = [&](Peak& peak, double value) {
+    if (is_computed(value) && !(value <= peak.value)) peak = {value, theta_deg, 0};
+  };
   if (couple_columns_[0] != missing_) {
     const double x = values[couple_columns_[0]], y = values[couple_columns_[1]],
                  z = values[couple_columns_[2]];
     const double s = std::sin(pump_.geometry.tilt), c = std::cos(pump_.geometry.tilt);
-    const auto larger = [&](Peak& peak, double value) {
-      if (is_computed(value) && !(value <= peak.value)) peak = {value, theta_deg, 0};
-    };
     larger(couple_on_block_, std::hypot(x, y));
     larger(couple_on_shaft_, std::hypot(x, c * y + s * z));  // z1 is (0, -s, c) in S2
   }
+  if (force_columns_[0] != missing_)
+    larger(side_force_, std::hypot(values[force_columns_[0]], values[force_columns_[1]],
+                                   values[force_columns_[2]]));
   for (std::size_t k = 0; k < z_columns_.size(); ++k) {
     const double phase = 360.0 * static_cast<double>(k) / pump_.geometry.pistons;
     now.psi_deg.push_back(psi - phase);
@@ -218,6 +223,10 @@ std::vector<std::string> TransferSummary::answers() const {
         "shaft at {:.4g} deg.",
         couple_on_block_.value, couple_on_block_.theta_deg, couple_on_shaft_.value,
         couple_on_shaft_.theta_deg));
+  if (is_computed(side_force_.value))
+    sentences.push_back(
+        fmt::format("Side force of the joint on block and shaft: up to {:.4g} N at {:.4g} deg.",
+                    side_force_.value, side_force_.theta_deg));
   if (pump_.transfer.kind == TransferKind::pistons) {
     if (is_computed(lag_.low))
       sentences.push_back(fmt::format(

@@ -311,9 +311,10 @@ EngineComparison compare_engines(const PreparedCase& ready, const EngineOptions&
   if ((integrated || options.sweep) && samples.omega == 0)
     throw InputError(ready.the_case.file.string() +
                      ": --engine: speed_rpm = 0: must not be 0 where engines integrate");
-  if ((integrated || options.sweep) && ready.the_case.pump.transfer.kind == TransferKind::cardan)
-    throw InputError(ready.the_case.file.string() +
-                     ": --engine: transfer of kind cardan: has no integration, which holds the "
+  if ((integrated || options.sweep) && ready.the_case.pump.transfer.is_uneven_joint())
+    throw InputError(ready.the_case.file.string() + ": --engine: transfer of kind " +
+                     to_string(ready.the_case.pump.transfer.kind) +
+                     ": has no integration, which holds the "
                      "block at constant speed; use --engine-way given");
   Turn turn;
   if (integrated) {

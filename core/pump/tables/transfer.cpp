@@ -4,15 +4,17 @@
 namespace bentaxis::tables {
 namespace {
 
-const When kCardan{"transfer", "kind", {"cardan"}};
+const When kCrosses{"transfer", "kind", {"cardan", "double_cardan"}};
+const When kDoubleCardan{"transfer", "kind", {"double_cardan"}};
 const When kPistons{"transfer", "kind", {"pistons"}};
 
 // All keys of the joint have defaults: it is there where it is needed.
-const Part kCardanJoint{kCardan, [](const Case& c) { return c.pump.transfer.cardan.has_value(); },
+const Part kCardanJoint{kCrosses, [](const Case& c) { return c.pump.transfer.cardan.has_value(); },
                         [](Case& c) {
-                          if (c.pump.transfer.kind == TransferKind::cardan)
-                            c.pump.transfer.cardan.emplace();
+                          if (c.pump.transfer.has_crosses()) c.pump.transfer.cardan.emplace();
                         }};
+const Part kDoubleJoint =
+    part_at([](auto& c) { return &c.pump.transfer.double_cardan; }, kDoubleCardan);
 const Part kWall = part_at([](auto& c) { return &c.pump.transfer.wall; }, kPistons);
 
 std::string type_refusal(const Case& c) {
@@ -22,13 +24,27 @@ std::string type_refusal(const Case& c) {
 }
 
 std::string cardan_not_assembled(const Case& c) {
-  if (c.pump.transfer.kind != TransferKind::cardan) return "";
+  if (!c.pump.transfer.is_uneven_joint()) return "";
   const AssemblyMargin margin = assembly_margin(c.pump);
   const double length = c.pump.geometry.piston_length;
   if (length > margin.longest_distance) return "";
   return "needs [pump] piston_length_mm > " + short_text(margin.longest_distance * 1e3) +
          ": a piston cannot be assembled at theta = " + short_text(margin.theta_deg) +
          " deg, where " + short_text((margin.longest_distance - length) * 1e3) + " mm are missing";
+}
+
+std::string deviations_refusal(const Case& c) {
+  if (!c.pump.transfer.wall || c.pump.transfer.wall->deviation.empty()) return "";
+  const WallContact& wall = *c.pump.transfer.wall;
+  const int pistons = c.pump.geometry.pistons;
+  if (wall.deviation.size() != static_cast<std::size_t>(pistons))
+    return "has " + std::to_string(wall.deviation.size()) +
+           " pistons, must be [pump] pistons = " + std::to_string(pistons);
+  for (std::size_t k = 0; k < wall.deviation.size(); ++k)
+    if (!(wall.clearance_of(k) > 0))
+      return "deviation_um of piston " + std::to_string(k + 1) + ": must be > " +
+             short_text(-wall.clearance * 1e6) + ", so that its clearance is > 0";
+  return "";
 }
 
 }  // namespace
@@ -42,12 +58,21 @@ Table transfer_table() {
       .parameters =
           {choice("kind", FIELD(c.pump.transfer.kind), transfer_names(), "gear",
                   "the bevel gear of `[gear]`; an ideal constant-velocity joint; one universal "
-                  "joint with its centre in O2; or tapered pistons that touch their bores "
-                  "(transfer.md)",
+                  "joint in O2; tapered pistons that touch their bores; or two "
+                  "universal joints about O2 with a sliding shaft between them (transfer.md)",
                   {.changes_model = true}),
            number("phase_deg", "phi", FIELD(c.pump.transfer.cardan->phase), kAngle, {-180, 180},
                   {0.0}, "shaft angle at which the arm of the shaft's fork lies along x1",
                   {.part = &kCardanJoint}),
+           number("cross_distance_mm", "d", FIELD(c.pump.transfer.double_cardan->cross_distance),
+                  kMillimetres, kPositive, kRequired,
+                  "distance of the centre of either cross from O2, along the axis of its fork",
+                  {.part = &kDoubleJoint,
+                   .plausible = {2,
+                                 200,
+                                 "forks of some mm hold a cross, and the joint lies within the "
+                                 "pump; its side force grows as 1/d",
+                                 {slips::kMetres, slips::kMicrometres, slips::kTenfold}}}),
            number("contact_from_joint_mm", "l_c", FIELD(c.pump.transfer.wall->from_joint),
                   kMillimetres, kNotNegative, kRequired,
                   "from A along the piston's axis to D, where the piston touches its bore",
@@ -78,15 +103,31 @@ Table transfer_table() {
                   {.practice = "lines 1, points 1.5", .part = &kWall}),
            number("dissipation_s_per_m", "c_d", FIELD(c.pump.transfer.wall->dissipation), {"s/m"},
                   kNotNegative, {0.0}, "growth of the force with the speed of approach",
-                  {.part = &kWall})},
+                  {.part = &kWall}),
+           text("clearance_deviation_file",
+                curve_at(PLACE(c.pump.transfer.wall->deviation_file),
+                         {.walls = [](Case& c) { return &*c.pump.transfer.wall; }}),
+                "CSV `piston,deviation_um`, path relative to the case file, a line for each "
+                "piston: by how much its clearance exceeds `clearance_mm`; empty: by nothing",
+                {.part = &kWall})},
       .rules = {after("kind", type_refusal), at_end("kind", cardan_not_assembled),
-                at_end("kind", [](const Case& c) {
-                  return c.pump.transfer.kind == TransferKind::pistons && !c.pump.transfer.wall
-                             ? std::string(
-                                   "needs contact_from_joint_mm, clearance_mm and "
-                                   "stiffness_N_per_um")
-                             : std::string();
-                })}};
+                at_end("kind",
+                       [](const Case& c) {
+                         return c.pump.transfer.kind == TransferKind::pistons &&
+                                        !c.pump.transfer.wall
+                                    ? std::string(
+                                          "needs contact_from_joint_mm, clearance_mm and "
+                                          "stiffness_N_per_um")
+                                    : std::string();
+                       }),
+                at_end("kind",
+                       [](const Case& c) {
+                         return c.pump.transfer.kind == TransferKind::double_cardan &&
+                                        !c.pump.transfer.double_cardan
+                                    ? std::string("needs cross_distance_mm")
+                                    : std::string();
+                       }),
+                at_end("clearance_deviation_file", deviations_refusal)}};
 }
 
 }  // namespace bentaxis::tables

@@ -18,9 +18,7 @@ void require_free_play(const Case& the_case);
 class PlacedSamples {
  public:
   PlacedSamples(const Model& model, const Case& the_case) : model_(model) {
-    const TransferKind kind = the_case.pump.transfer.kind;
-    if (kind == TransferKind::cardan || kind == TransferKind::pistons)
-      pressure_.emplace(the_case.pressure);
+    if (!the_case.pump.transfer.is_even()) pressure_.emplace(the_case.pressure);
   }
   /// The instant itself, or a copy that is valid until the next call.
   const Instant& at(const Instant& instant) {

@@ -55,8 +55,14 @@ class DerivativeModel {
   /// @throws InputError where no joint drives the block, and as reactions()
   void joint_couple(const Instant& instant, std::span<const Instant> rates,
                     std::span<double> values, std::span<double> derivatives) const;
+  /// The force Fcs of two universal joints at O2, likewise.
+  /// @throws InputError where no such joint drives the block, and as reactions()
+  void joint_force(const Instant& instant, std::span<const Instant> rates, std::span<double> values,
+                   std::span<double> derivatives) const;
 
  private:
+  void vector_from(std::size_t column, const Instant& instant, std::span<const Instant> rates,
+                   std::span<double> values, std::span<double> derivatives) const;
   template <class Put>
   void differentiate(const closed_form::Common& common, const Instant& instant,
                      std::span<const Instant> rates, const Put& put) const;

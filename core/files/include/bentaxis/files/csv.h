@@ -64,6 +64,12 @@ TimeCurve read_share_curve(const std::filesystem::path& file);
 /// @throws InputError naming file and line.
 void read_tooth_errors(const std::filesystem::path& file, ToothData& teeth);
 
+/// Reads by how much the clearance of each piston differs from that of all: CSV with the header
+/// piston,deviation_um, a row for each piston in any order.
+/// @return  m, of pistons 1, 2, .. N
+/// @throws InputError naming file, line and value.
+std::vector<double> read_clearance_deviations(const std::filesystem::path& file, int pistons);
+
 /// Reads the motion of another simulator or a rig: CSV with theta_deg, psi_deg, theta_rpm, psi_rpm,
 /// theta_rad_per_s2, psi_rad_per_s2 and where there are any time_s, p_1_bar .. p_N_bar,
 /// suction_bar, delivery_bar, in any order. Pressures that it does not give are the case's, those

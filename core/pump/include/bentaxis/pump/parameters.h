@@ -4,7 +4,10 @@
 // points and derivatives, so that a mistake in one of them shows as a difference.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -109,45 +112,105 @@ enum class TransferKind {
   constant_velocity,  ///< an ideal constant-velocity joint
   cardan,             ///< one universal joint with a massless cross, centre O2
   pistons,            ///< tapered pistons or rods that touch the walls of their bores
+  double_cardan,      ///< two universal joints with a sliding shaft between them, about O2
 };
 
+/// What the rest of the program asks of a kind of transfer.
+struct TransferTraits {
+  const char* name;  ///< as in a case file
+  const char* what;  ///< in a sentence
+  bool joint;        ///< the angle of the shaft prescribes that of the block through a joint
+  bool even;         ///< the block turns exactly as the shaft at constant speed, and all pistons
+                     ///< move along one path
+};
+/// In the order of the enumeration.
+inline constexpr TransferTraits kTransfers[] = {
+    {"gear", "the bevel gear", false, true},
+    {"constant_velocity", "constant-velocity joint", true, true},
+    {"cardan", "universal joint", true, false},
+    {"pistons", "pistons that touch their bores", false, false},
+    {"double_cardan", "double universal joint", true, true}};
+inline constexpr std::size_t kTransferKinds = std::size(kTransfers);
+
+constexpr const TransferTraits& traits_of(TransferKind kind) {
+  return kTransfers[static_cast<std::size_t>(kind)];
+}
 /// Names as in a case file, in the order of the enumeration.
 inline const std::vector<std::string>& transfer_names() {
-  static const std::vector<std::string> names = {"gear", "constant_velocity", "cardan", "pistons"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const TransferTraits& transfer : kTransfers) all.emplace_back(transfer.name);
+    return all;
+  }();
   return names;
 }
-inline std::string to_string(TransferKind kind) {
-  return transfer_names()[static_cast<std::size_t>(kind)];
-}
+inline std::string to_string(TransferKind kind) { return traits_of(kind).name; }
 
-/// One universal joint. The shaft's fork holds the arm (cos t, sin t, 0) in S1, t = theta - phase;
-/// the block's fork the arm (-sin(psi - phase), cos(psi - phase), 0) in S2.
+/// How the crosses of universal joints stand. The shaft's fork holds the arm (cos t, sin t, 0) in
+/// S1, t = theta - phase. Of one joint the block's fork holds the arm (-sin(psi - phase),
+/// cos(psi - phase), 0) in S2; of two joints the arm (cos t, sin t, 0) in S2.
 struct CardanJoint {
   double phase = 0;  ///< phi, rad
 };
 
+/// Two universal joints in a row: the cross of the shaft's fork has its centre on z1 at the
+/// distance `cross_distance` before O2, that of the block's fork on z2 as far behind O2. A shaft
+/// without mass, whose two forks are parallel, joins both crosses; its length adapts without
+/// friction.
+struct DoubleCardanJoint {
+  double cross_distance = 0;  ///< d, m
+};
+
 /// Contact of a tapered piston with the wall of its bore. At D = A + l_c e the axis of the piston
-/// may be `clearance` away from that of the bore; with the approach x beyond it the wall pushes
-/// with k x0 (x/x0)^e (1 + c_d x'), never negative; x0 is kWallApproach.
+/// may be `clearance` away from that of the bore, or what its deviation makes of it; with the
+/// approach x beyond it the wall pushes with k x0 (x/x0)^e (1 + c_d x'), never negative; x0 is
+/// kWallApproach.
 struct WallContact {
-  double from_joint = 0;   ///< l_c, m, from A along the piston's axis to D
-  double clearance = 0;    ///< h, m, radial
-  double stiffness = 0;    ///< k, N/m, at the approach x0
-  double exponent = 1;     ///< e
-  double dissipation = 0;  ///< c_d, s/m
+  double from_joint = 0;                      ///< l_c, m, from A along the piston's axis to D
+  double clearance = 0;                       ///< h, m, radial
+  double stiffness = 0;                       ///< k, N/m, at the approach x0
+  double exponent = 1;                        ///< e
+  double dissipation = 0;                     ///< c_d, s/m
+  std::filesystem::path deviation_file = {};  ///< where the deviations come from
+  std::vector<double> deviation = {};  ///< m, of the clearance of each piston; empty: none has one
+
+  /// Of a piston, counted from 0, m.
+  double clearance_of(std::size_t piston) const {
+    return deviation.empty() ? clearance : clearance + deviation[piston];
+  }
+  double smallest_clearance() const {
+    return deviation.empty() ? clearance
+                             : clearance + *std::min_element(deviation.begin(), deviation.end());
+  }
 };
 inline constexpr double kWallApproach = 1e-6;
 
 /// How the shaft turns the block. Each kind's own data is present when the case file gives it.
 struct Transfer {
   TransferKind kind = TransferKind::gear;
-  std::optional<CardanJoint> cardan = {};
-  std::optional<WallContact> wall = {};  ///< of kind pistons
+  std::optional<CardanJoint> cardan = {};  ///< of kinds cardan and double_cardan
+  std::optional<WallContact> wall = {};    ///< of kind pistons
+  std::optional<DoubleCardanJoint> double_cardan = {};
 
   /// Whether the angle of the shaft prescribes that of the block through a joint.
-  bool is_joint() const {
-    return kind == TransferKind::constant_velocity || kind == TransferKind::cardan;
+  bool is_joint() const { return traits_of(kind).joint; }
+  /// Whether the block turns exactly as the shaft at constant speed: all pistons then move along
+  /// one path, and chambers have the pressures of the shaft's angle.
+  bool is_even() const { return traits_of(kind).even; }
+  /// Whether a joint turns the block at a speed of its own: each piston has a path of its own.
+  bool is_uneven_joint() const { return is_joint() && !is_even(); }
+  /// Whether its joint has crosses, whose arms stand at a phase.
+  bool has_crosses() const {
+    return kind == TransferKind::cardan || kind == TransferKind::double_cardan;
   }
+  double phase() const { return cardan ? cardan->phase : 0; }
+  /// Whether pistons have clearances of their own.
+  bool has_own_clearances() const {
+    return kind == TransferKind::pistons && wall && !wall->deviation.empty();
+  }
+  /// Whether the pump repeats itself after an N-th of a turn, but for the numbers of the pistons:
+  /// crosses and clearances of their own repeat after a turn.
+  bool repeats_every_pitch() const { return !has_crosses() && !has_own_clearances(); }
 };
 
 /// Bearing centres on the shaft axis, z1 in m.

@@ -51,7 +51,8 @@ struct PairField {
 };
 /// A CSV file with the points of a curve, relative to the case file: the opening of a port, the
 /// stroke of a piston, what drives the shaft over time, the share of a load over time, pitch errors
-/// of teeth, or where all are null the chamber pressure. An empty name: none.
+/// of teeth, deviations of the pistons' clearances, or where all are null the chamber pressure. An
+/// empty name: none.
 struct CurveField {
   Access<std::filesystem::path> file = {};
   OpeningTable* (*opening)(Case&) = nullptr;
@@ -59,6 +60,7 @@ struct CurveField {
   DriveSpec* (*drive)(Case&) = nullptr;
   TimeCurve* (*share)(Case&) = nullptr;
   ToothData* (*teeth)(Case&) = nullptr;
+  WallContact* (*walls)(Case&) = nullptr;
 };
 using Field = std::variant<NumberField, IntegerField, FlagField, TextField, ChoiceField, PairField,
                            CurveField>;

@@ -3,6 +3,7 @@
 // new quantity is one entry of BENTAXIS_QUANTITIES and the physics that computes it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string_view>
 
@@ -32,13 +33,13 @@ enum Set : unsigned {
   gear = bit(TransferKind::gear),
   cardan = bit(TransferKind::cardan),
   pistons = bit(TransferKind::pistons),
-  joint = bit(TransferKind::cardan) | bit(TransferKind::constant_velocity),
+  double_cardan = bit(TransferKind::double_cardan),
+  joint = bit(TransferKind::cardan) | bit(TransferKind::constant_velocity) |
+          bit(TransferKind::double_cardan),
   cardan_or_pistons = bit(TransferKind::cardan) | bit(TransferKind::pistons),
-  all = bit(TransferKind::gear) | bit(TransferKind::cardan) | bit(TransferKind::pistons) |
-        bit(TransferKind::constant_velocity)
+  all = (1U << kTransferKinds) - 1
 };
 }  // namespace transfers
-inline constexpr std::size_t kTransferKinds = 4;
 
 // clang-format off
 // The quantities of a row of results, in their order:
@@ -73,6 +74,8 @@ inline constexpr std::size_t kTransferKinds = 4;
     "about z2", "(57)", "torque that drives the block") \
   X(TcsJoint, "Tcs", joint, once, "xyz", "Nm", reaction, "Tcs", "S2", "block", "shaft (joint)", \
     "about O2", "", "couple by which a joint drives the block") \
+  X(Fcs, "Fcs", double_cardan, once, "xyz", "N", reaction, "Fcs", "S2", "block", "shaft (joint)", \
+    "O2", "", "force beside the couple of a double universal joint") \
   X(Rw, "Rw", pistons, per_piston, "xy", "N", reaction, "Rw", "S2", "piston #", "block (bore wall)", \
     "D#", "", "wall force on a tapered piston") \
   X(psi, "psi", cardan_or_pistons, once, "-", "deg", derived, "psi", "", "block", "", "about z2", \
@@ -183,20 +186,27 @@ constexpr std::size_t count_reactions() {
   return count;
 }
 
+/// Place of a quantity in the row of every transfer.
+constexpr std::array<QuantityPlace, kTransferKinds> quantity_places(std::size_t wanted) {
+  std::array<QuantityPlace, kTransferKinds> places;
+  for (std::size_t kind = 0; kind < kTransferKinds; ++kind)
+    places[kind] = quantity_place(wanted, static_cast<TransferKind>(kind));
+  return places;
+}
+/// The first transfer that has a quantity.
+constexpr TransferKind first_with(std::size_t wanted) {
+  std::size_t kind = 0;
+  while ((kQuantities[wanted].transfers & transfers::bit(static_cast<TransferKind>(kind))) == 0)
+    ++kind;
+  return static_cast<TransferKind>(kind);
+}
+
 template <Quantity quantity>
-inline constexpr QuantityPlace kPlaces[kTransferKinds] = {
-    quantity_place(static_cast<std::size_t>(quantity), TransferKind::gear),
-    quantity_place(static_cast<std::size_t>(quantity), TransferKind::constant_velocity),
-    quantity_place(static_cast<std::size_t>(quantity), TransferKind::cardan),
-    quantity_place(static_cast<std::size_t>(quantity), TransferKind::pistons)};
+inline constexpr std::array<QuantityPlace, kTransferKinds> kPlaces =
+    quantity_places(static_cast<std::size_t>(quantity));
 template <Quantity quantity>
-inline constexpr QuantityPlace kPlace = quantity_place(
-    static_cast<std::size_t>(quantity),
-    (kQuantities[static_cast<std::size_t>(quantity)].transfers & transfers::gear) != 0
-        ? TransferKind::gear
-    : (kQuantities[static_cast<std::size_t>(quantity)].transfers & transfers::cardan) != 0
-        ? TransferKind::cardan
-        : TransferKind::pistons);
+inline constexpr QuantityPlace kPlace =
+    kPlaces<quantity>[static_cast<std::size_t>(first_with(static_cast<std::size_t>(quantity)))];
 inline constexpr QuantityPlace kReactionsEnd = quantity_place(count_reactions());
 
 }  // namespace bentaxis

@@ -46,7 +46,8 @@ class TransferSummary {
   double speed_ripple() const;
   const Peak& couple_on_block() const { return couple_on_block_; }  ///< across z2, Nm; joints
   const Peak& couple_on_shaft() const { return couple_on_shaft_; }  ///< across z1, Nm; joints
-  const Peak& wall() const { return wall_; }  ///< largest wall force, N; pistons
+  const Peak& side_force() const { return side_force_; }  ///< at O2, N; double universal joint
+  const Peak& wall() const { return wall_; }              ///< largest wall force, N; pistons
   /// Angle psi_k of its bore at which a piston is at the end of its stroke, deg, over all pistons:
   /// the chamber is smallest near 0 and largest near 180 deg.
   Range inner_dead_centre() const;
@@ -81,13 +82,13 @@ class TransferSummary {
   // Places of columns; past the end: there is none.
   std::size_t missing_;
   std::size_t lag_column_, psi_column_, speed_column_;
-  std::array<std::size_t, 3> couple_columns_;
+  std::array<std::size_t, 3> couple_columns_, force_columns_;
   std::vector<std::array<std::size_t, 2>> wall_columns_;
   std::vector<std::size_t> z_columns_;
 
   Range lag_, speed_;
   double speed_sum_ = 0;
-  Peak couple_on_block_, couple_on_shaft_, wall_;
+  Peak couple_on_block_, couple_on_shaft_, side_force_, wall_;
   std::size_t rows_ = 0, loose_rows_ = 0, hand_overs_ = 0;
   int most_walls_ = 0, last_carrier_ = -1, first_carrier_ = -1;
   std::vector<Sector> sectors_;
