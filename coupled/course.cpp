@@ -88,6 +88,8 @@ void HybridIntegrator::go_back(double time) {
     if (system_.mechanics().compliant() && !touching()) apart_ += time - step_start_;
     edges_.find(block(time_, state_));
     set_interval();
+  } else if (step_start_ != time_) {
+    read_integrals(time_, integrals_);
   }
   step_start_ = time_;
   system_.forget();
@@ -310,7 +312,6 @@ void HybridIntegrator::advance(double end) {
   step_start_ = before;
   time_ = integrator_.time();
   system_.unscaled(integrator_.state_at(time_), state_);
-  read_integrals(time_, integrals_);
 
   if (!touching() && system_.mechanics().compliant()) {
     restart_ = hidden_touch();
@@ -350,6 +351,8 @@ void HybridIntegrator::advance(double end) {
         restart_ = true;
       }
   }
+  // Until then they are the integrator's.
+  if (restart_ || time_ == step_start_) read_integrals(time_, integrals_);
 }
 
 }  // namespace bentaxis::coupled

@@ -75,7 +75,8 @@ Chamber::Volume Chamber::volume(double theta) const {
 
 Chamber::Turned Chamber::volume(double theta, double psi) const {
   const double ct = std::cos(theta), st = std::sin(theta);
-  const double cp = std::cos(psi), sp = std::sin(psi);
+  const bool locked = psi == theta;
+  const double cp = locked ? ct : std::cos(psi), sp = locked ? st : std::sin(psi);
   const double across = bore_radius_ * sp - joint_across_ * st;
   const double along = bore_radius_ * cp - joint_along_ * ct - joint_centre_;
   const double root = std::sqrt(length_squared_ - across * across - along * along);

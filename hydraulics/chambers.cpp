@@ -67,6 +67,10 @@ Chambers::Sources Chambers::sources(System& sys) const {
 Chambers::Exchange Chambers::exchange(System& sys, double angle_deg, double volume,
                                       const Fluid::Mixture& at) const {
   const Side &source = sys[kSuction].side, &line = sys[kDelivery].side;
+  if (sys.by_state == nullptr)
+    return {{from_suction_.value(suction_.area(angle_deg), source, at), 0, 0},
+            {into_delivery_.value(delivery_.area(angle_deg), at, line), 0, 0},
+            {leakage_.value(at, volume), 0, 0}};
   Exchange flows{from_suction_.flow(suction_.area(angle_deg), source, at),
                  into_delivery_.flow(delivery_.area(angle_deg), at, line),
                  leakage_.flow(at, volume)};
@@ -122,6 +126,8 @@ void Chambers::stamp(System& sys) const {
   if (sys.flows != nullptr) {
     for (auto* flows : {&sys.flows->suction, &sys.flows->delivery, &sys.flows->leakage})
       flows->resize(count());
+    sys.flows->oil.resize(count());
+    sys.flows->volume.resize(count());
     sys.flows->power = 0;
   }
   double delivered = 0, taken = 0;
@@ -137,6 +143,8 @@ void Chambers::stamp(System& sys) const {
       sys.flows->suction[k] = in.value;
       sys.flows->delivery[k] = out.value;
       sys.flows->leakage[k] = lost.value;
+      sys.flows->oil[k] = at;
+      sys.flows->volume[k] = volume.value;
       sys.flows->power -= sys.fluid.gauge(sys.y[k]) * volume.slope * now.turning / now.seconds;
     }
     if (sys.rates == nullptr && sys.by_state == nullptr) continue;
@@ -197,13 +205,13 @@ void Chambers::power(System& sys, const Flows& flows, PowerBudget& power) const 
   const Sources from = sources(sys);
   const double* y = sys.y;
   for (int k = 0; k < count(); ++k) {
-    const Fluid::Mixture at = mixture(sys.fluid, y, k);
-    const double volume = this->volume(sys.now, k).value;
+    const Fluid::Mixture& at = flows.oil[k];
+    const double volume = flows.volume[k];
     const double in = flows.suction[k], out = flows.delivery[k], lost = flows.leakage[k];
     // What comes in brings the air that is out where it comes from.
     const double air = air_at_ > 0 ? y[air_at_ + k] : 0;
     const double by_air = air_at_ > 0 ? sys.fluid.potential_by_air(y[k]) : 0;
-    const double own = air_at_ > 0 ? sys.fluid.potential(y[k], air) : sys.fluid.potential(y[k]);
+    const double own = air_at_ > 0 ? sys.fluid.potential(y[k], air) : sys.fluid.potential(y[k], at);
     const auto potential = [&](bool comes_in, const Fluid::AirOut& there) {
       return comes_in ? own + by_air * (there.value - air) : own;
     };

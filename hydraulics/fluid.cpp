@@ -276,10 +276,15 @@ Fluid::Bubbles Fluid::bubble_potential(double s) const {
   return {sums_[i].air + more.air, sums_[i].released + more.released, sums_[i].all + more.all};
 }
 
-double Fluid::potential(double s) const {
+double Fluid::potential_at(double s, double pressure) const {
   const Bubbles bubbles = bubble_potential(s);
-  return (oil_potential(atmosphere_ * std::exp(s)) + bubbles.air + bubbles.released) /
-         reference_density_;
+  return (oil_potential(pressure) + bubbles.air + bubbles.released) / reference_density_;
+}
+
+double Fluid::potential(double s) const { return potential_at(s, atmosphere_ * std::exp(s)); }
+
+double Fluid::potential(double s, const State& there) const {
+  return potential_at(s, there.pressure);
 }
 
 double Fluid::potential(double s, double air_out) const {

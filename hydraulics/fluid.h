@@ -89,6 +89,7 @@ class Fluid {
   /// Pressure potential, J/kg: the integral of dP/density from atmospheric pressure. A mass flow m
   /// carries m x potential, and what it loses between two pressures is m x their difference.
   double potential(double s) const;
+  double potential(double s, const State& there) const;  ///< the same, of the state at s
   /// The same with the share of the dissolved air that is out given, and what it grows by with it.
   double potential(double s, double air_out) const;
   double potential_by_air(double s) const;
@@ -126,6 +127,7 @@ class Fluid {
   void add_oil_and_air(double pressure, const Smooth& q, Volumes& v) const;
   State state_of(const Volumes& v, double pressure) const;
   double oil_potential(double pressure) const;  // integral of the oil's own v dP
+  double potential_at(double s, double pressure) const;
   // The same of the bubbles where no closed form is: sums up to places in s between which few
   // points are enough.
   struct Bubbles {

@@ -53,6 +53,15 @@ Leakage::Parts Leakage::parts(const Fluid::State& chamber, double volume) const 
   return parts;
 }
 
+double Leakage::value(const Fluid::State& chamber, double volume) const {
+  const double density = (chamber.density + case_state_.density) / 2;
+  double value = constant_ * density * (chamber.pressure - case_state_.pressure);
+  if (viscosity_)
+    value += gaps(volume) * density *
+             viscosity_->drive(chamber.pressure - atmosphere_, case_state_.pressure - atmosphere_);
+  return value;
+}
+
 MassFlow Leakage::flow(const Fluid::State& chamber, double volume) const {
   const double drop = chamber.pressure - case_state_.pressure;
   const double density = (chamber.density + case_state_.density) / 2;

@@ -27,6 +27,7 @@ class Leakage {
 
   /// From a chamber of that volume, m3, to the case.
   MassFlow flow(const Fluid::State& chamber, double volume) const;
+  double value(const Fluid::State& chamber, double volume) const;  ///< of it alone, kg/s
   /// Conductance of all gaps of a chamber of that volume, m3.
   double gaps(double volume) const;
   /// The same flow by where it goes through, kg/s; what is not there is 0.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include "bentaxis/pump/units.h"
@@ -41,8 +42,7 @@ double PortOpening::Frame::past(double theta_deg) const {
   return wrap(theta_deg + half_ - first_) + first_;
 }
 
-double PortOpening::Overlap::area(double theta_deg) const {
-  const double past = frame.past(theta_deg);
+double PortOpening::Overlap::area(double past) const {
   const double overlap = std::min(past, to) - std::max(frame.trailing(past), from);
   if (!(overlap > 0)) return 0;
   if (circular) {
@@ -58,22 +58,19 @@ double PortOpening::Wedge::passed(double length_deg) const {
   return quadratic ? share * share : share;
 }
 
-double PortOpening::Wedge::area(double theta_deg) const {
-  const double leading = frame.past(theta_deg);
+double PortOpening::Wedge::area(double leading) const {
   const double behind = frame.trailing(leading);
   if (trailing)
     return root_area * (passed(from + length - behind) - passed(from + length - leading));
   return root_area * (passed(leading - from) - passed(behind - from));
 }
 
-double PortOpening::Groove::area(double theta_deg) const {
-  const double past = frame.past(theta_deg);
+double PortOpening::Groove::area(double past) const {
   const double overlap = std::min(past, to) - std::max(frame.trailing(past), from);
   return std::clamp(mouth_per_degree * overlap, 0.0, cross_section);
 }
 
-double PortOpening::Hole::area(double theta_deg) const {
-  const double past = frame.past(theta_deg);
+double PortOpening::Hole::area(double past) const {
   // Only one end of the kidney is over the hole at a time.
   const double overlap = radius + length * std::min(past - centre, centre - frame.trailing(past));
   return end_radius > 0 ? common_area(end_radius, radius, overlap) : segment_area(radius, overlap);
@@ -187,12 +184,28 @@ void PortOpening::add(const PartName& name, Part part) {
 }
 
 double PortOpening::part_area(std::size_t i, double theta_deg) const {
-  return std::visit([&](const auto& part) { return part.area(theta_deg); }, parts_[i]);
+  Place none;
+  return area_of(parts_[i], theta_deg, none);
+}
+
+double PortOpening::area_of(const Part& part, double theta_deg, Place& place) {
+  return std::visit(
+      [&](const auto& of) {
+        if constexpr (std::is_same_v<decltype(of), const Table&>) {
+          return of.area(theta_deg);
+        } else {
+          if (place.frame == nullptr || !(*place.frame == of.frame))
+            place = {&of.frame, of.frame.past(theta_deg)};
+          return of.area(place.past);
+        }
+      },
+      part);
 }
 
 double PortOpening::area(double theta_deg) const {
   double sum = 0;
-  for (std::size_t i = 0; i < parts_.size(); ++i) sum += part_area(i, theta_deg);
+  Place place;
+  for (const Part& part : parts_) sum += area_of(part, theta_deg, place);
   return sum;
 }
 

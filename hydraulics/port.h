@@ -56,6 +56,9 @@ class PortOpening {
     double past(double theta_deg) const;
     double trailing(double past) const { return past - 2 * half_; }
     double half() const { return half_; }
+    bool operator==(const Frame& other) const {
+      return first_ == other.first_ && half_ == other.half_;
+    }
 
    private:
     double first_, half_;
@@ -67,32 +70,40 @@ class PortOpening {
     double length, height;      // m per degree, m
     double area_per_degree;
     bool circular;
-    double area(double theta_deg) const;
+    double area(double past) const;
   };
   struct Wedge {  // notch; root at `from` or, behind the port, at `to`
     Frame frame;
     double from, length, root_area;
     bool quadratic, trailing;
     double passed(double length_deg) const;
-    double area(double theta_deg) const;
+    double area(double past) const;
   };
   struct Groove {
     Frame frame;
     double from, to, mouth_per_degree, cross_section;
-    double area(double theta_deg) const;
+    double area(double past) const;
   };
   struct Hole {
     Frame frame;
     double centre, radius, length;  // degrees, m, m per degree
     double end_radius;              // of the kidney, m; 0: straight
-    double area(double theta_deg) const;
+    double area(double past) const;
   };
   struct Table {
     double start;
     PeriodicCubic curve;  // over the angle past the first point
     double area(double theta_deg) const;
   };
+  // Areas of all but a table are functions of where the leading edge is in the part's frame.
   using Part = std::variant<Overlap, Wedge, Groove, Hole, Table>;
+
+  // Where the kidney is in a frame: most parts of a port have the same.
+  struct Place {
+    const Frame* frame = nullptr;
+    double past = 0;
+  };
+  static double area_of(const Part& part, double theta_deg, Place& place);
 
   // length: m per degree on the bore circle
   void add_geometry(const HydraulicData& data, const PlatePort& port, double length);

@@ -42,18 +42,20 @@ struct Moment {
   bool locked = true;       ///< both at block_deg, a volume's slope is by the angle
 };
 
-/// Mass flows at one state, kg/s; positive as named.
+/// Mass flows at one state, kg/s; positive as named. And what they were found from.
 struct Flows {
-  std::vector<double> suction;   ///< from the suction port into each chamber
-  std::vector<double> delivery;  ///< from each chamber into the delivery port
-  std::vector<double> leakage;   ///< from each chamber to the case
-  double load = 0;               ///< into the load; fixed line: all of the delivery
-  double relief = 0;             ///< of that: over the relief valve beside the load
-  double taken = 0;              ///< from the tank, or from the charge supply
-  double accumulator = 0;        ///< into the accumulator
-  double power = 0;              ///< of the pistons on the oil: -sum p dV/dt, W, p gauge
-  double carried_in = 0;         ///< to the suction port, out of what is before it
-  double carried_out = 0;        ///< from the delivery port, into what is behind it
+  std::vector<double> suction;      ///< from the suction port into each chamber
+  std::vector<double> delivery;     ///< from each chamber into the delivery port
+  std::vector<double> leakage;      ///< from each chamber to the case
+  std::vector<Fluid::Mixture> oil;  ///< in each chamber
+  std::vector<double> volume;       ///< of each chamber, m3
+  double load = 0;                  ///< into the load; fixed line: all of the delivery
+  double relief = 0;                ///< of that: over the relief valve beside the load
+  double taken = 0;                 ///< from the tank, or from the charge supply
+  double accumulator = 0;           ///< into the accumulator
+  double power = 0;                 ///< of the pistons on the oil: -sum p dV/dt, W, p gauge
+  double carried_in = 0;            ///< to the suction port, out of what is before it
+  double carried_out = 0;           ///< from the delivery port, into what is behind it
 };
 
 /// Rates of the states, their derivatives and the flows, as far as they are wanted. Elements first

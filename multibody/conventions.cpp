@@ -38,7 +38,7 @@ int InlineJoint::first_row(const SimTK::State& state) const {
   SimTK::MultiplierIndex velocity;
   SimTK::MultiplierIndex acceleration;
   constraint_.getIndexOfMultipliersInUse(state, position, velocity, acceleration);
-  return position;
+  return position + first_;
 }
 
 SimTK::Vec3 InlineJoint::force_in_base(const SimTK::State& state) const {

@@ -34,18 +34,24 @@ double applied_generalized_force(const SimTK::State& state, const OneMobilityCon
 }
 
 /// ADAMS' inline joint: keeps a point of the follower on a line of the base by two equations, the
-/// distance along two axes across the line, both fixed in the base. Simbody's PointOnLine with its
-/// axes and signs made explicit.
+/// distance along two axes across the line, both fixed in the base. Simbody's PointOnLine, or one
+/// of InlineJoints, with its axes and signs made explicit.
 class InlineJoint {
  public:
   InlineJoint() = default;
   InlineJoint(SimTK::MobilizedBody& base, const SimTK::UnitVec3& line, const SimTK::Vec3& point,
               SimTK::MobilizedBody& follower, const SimTK::Vec3& follower_point)
-      : constraint_(base, line, point, follower, follower_point),
+      : InlineJoint(SimTK::Constraint::PointOnLine(base, line, point, follower, follower_point), 0,
+                    line) {}
+  /// Of a constraint with more equations: two of them.
+  /// @param first  of its position equations
+  InlineJoint(const SimTK::Constraint& constraint, int first, const SimTK::UnitVec3& line)
+      : constraint_(constraint),
+        first_(first),
         x_(line.perp()),
         y_(line % SimTK::Vec3(line.perp())) {}
 
-  const SimTK::Constraint::PointOnLine& constraint() const { return constraint_; }
+  const SimTK::Constraint& constraint() const { return constraint_; }
 
   /// The two axes, in the base's frame: equation i is the follower point's distance along axis i.
   const SimTK::Vec3& axis_x() const { return x_; }
@@ -63,7 +69,8 @@ class InlineJoint {
   SimTK::Vec3 force_in_base(const SimTK::State& state) const;
 
  private:
-  SimTK::Constraint::PointOnLine constraint_;
+  SimTK::Constraint constraint_;
+  int first_ = 0;
   SimTK::Vec3 x_, y_;
 };
 

@@ -3,8 +3,12 @@
 #include <SimTKsimbody.h>
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <vector>
+
 #include "conventions.h"
 #include "scene/gear_mesh.h"
+#include "scene/inline_joints.h"
 #include "transfers/joint.h"
 
 namespace bentaxis::multibody {
@@ -50,7 +54,7 @@ TEST(SimbodyConventions, ConstraintForceOnTheFollowerBalancesItsLoad) {
                                   Body::Rigid(MassProperties(2, Vec3(0), Inertia(1))), Transform());
   const UnitVec3 line(Vec3(1, 2, 3));
   const InlineJoint inline_joint(w.matter.updGround(), line, Vec3(0), body, Vec3(0));
-  const Constraint::PointOnLine& constraint = inline_joint.constraint();
+  const Constraint& constraint = inline_joint.constraint();
   const Vec3 load(5, -7, 11);
   Force::ConstantForce(w.forces, body, Vec3(0), load);
   State state = w.system.realizeTopology();
@@ -70,6 +74,78 @@ TEST(SimbodyConventions, ConstraintForceOnTheFollowerBalancesItsLoad) {
   // Newton's third law on the other side.
   EXPECT_LT(distance(constraint_force_on(state, constraint, w.matter.getGround())[1], -f[1]),
             1e-12);
+}
+
+// Two followers on a shaft, each with a point on a line of a base that is on ground, or on the
+// shaft too. Positions and speeds are anything: the equations are compared where they are not met.
+struct TwoInlineJoints {
+  TwoInlineJoints(bool as_one, bool base_on_shaft)
+      : shaft(w.matter.updGround(), Transform(Vec3(0.1, 0.2, -0.3)), some_body(), Transform()),
+        base(base_on_shaft ? static_cast<MobilizedBody&>(shaft) : w.matter.updGround(),
+             Transform(Rotation(0.7, UnitVec3(1, 2, -1)), Vec3(0.3, -0.1, 0.2)), some_body(),
+             Transform(Vec3(0.05, 0, 0.1))) {
+    const UnitVec3 line(Vec3(1, -2, 3));
+    const Vec3 point(0.2, 0.1, 0.4);
+    const std::vector<Vec3> lines = {Vec3(0.1, 0.2, 0.3), Vec3(-0.2, 0.1, 0)};
+    for (const Vec3& at : {Vec3(0.4, 0, 0.1), Vec3(-0.3, 0.2, 0)})
+      followers.push_back(MobilizedBody::Ball(shaft, Transform(at), some_body(), Transform()));
+    if (as_one) {
+      all.emplace(base, line, lines, followers, point);
+      for (int k = 0; k < 2; ++k) joints.emplace_back(*all, 2 * k, line);
+    } else {
+      for (int k = 0; k < 2; ++k) joints.emplace_back(base, line, lines[k], followers[k], point);
+    }
+    Force::UniformGravity(w.forces, w.matter, Vec3(1, -9, 2));
+    state = w.system.realizeTopology();
+    Random::Gaussian random(0, 1);
+    random.setSeed(7);
+    for (int i = 0; i < state.getNQ(); ++i) state.updQ()[i] = random.getValue();
+    for (int i = 0; i < state.getNU(); ++i) state.updU()[i] = random.getValue();
+    w.system.realize(state, Stage::Position);
+    w.matter.normalizeQuaternions(state);
+    w.system.realize(state, Stage::Acceleration);
+  }
+  World w;
+  MobilizedBody::Ball shaft;
+  MobilizedBody::Pin base;
+  std::vector<MobilizedBody> followers;
+  std::optional<InlineJoints> all;
+  std::vector<InlineJoint> joints;
+  State state;
+};
+
+TEST(InlineJoints, HaveTheEquationsOfSimbodysPointOnLine) {
+  for (const bool base_on_shaft : {false, true}) {
+    const TwoInlineJoints one(true, base_on_shaft), many(false, base_on_shaft);
+    ASSERT_EQ(one.state.getNQErr(), many.state.getNQErr());
+    EXPECT_GT(many.state.getQErr().normInf(), 0.1);
+    EXPECT_GT(many.state.getUErr().normInf(), 0.1);
+    EXPECT_LT((one.state.getQErr() - many.state.getQErr()).normInf(), 1e-15);
+    EXPECT_LT((one.state.getUErr() - many.state.getUErr()).normInf(), 1e-13);
+    Matrix g_one, g_many;
+    one.w.matter.calcG(one.state, g_one);
+    many.w.matter.calcG(many.state, g_many);
+    EXPECT_LT((g_one - g_many).norm(), 1e-14 * g_many.norm());
+    Vector bias_one, bias_many;
+    one.w.matter.calcBiasForAccelerationConstraints(one.state, bias_one);
+    many.w.matter.calcBiasForAccelerationConstraints(many.state, bias_many);
+    EXPECT_GT(bias_many.norm(), 0.1);
+    EXPECT_LT((bias_one - bias_many).norm(), 1e-13 * bias_many.norm());
+    EXPECT_LT((one.state.getUDot() - many.state.getUDot()).norm(),
+              1e-11 * many.state.getUDot().norm());
+    for (int k = 0; k < 2; ++k) {
+      const Vec3 force = many.joints[k].force_in_base(many.state);
+      EXPECT_LT(distance(one.joints[k].force_in_base(one.state), force), 1e-11 * force.norm());
+      EXPECT_EQ(one.joints[k].axis_x(), many.joints[k].axis_x());
+      EXPECT_EQ(one.joints[k].first_row(one.state), many.joints[k].first_row(many.state));
+    }
+    const Vec3 on_base =
+        constraint_force_on(many.state, many.joints[0].constraint(), many.base)[1] +
+        constraint_force_on(many.state, many.joints[1].constraint(), many.base)[1];
+    EXPECT_LT(
+        distance(constraint_force_on(one.state, one.joints[0].constraint(), one.base)[1], on_base),
+        1e-11 * on_base.norm());
+  }
 }
 
 // A speed held against a load torque: the drive applies the opposite torque.

@@ -30,8 +30,7 @@ constexpr int kMaxSteps = 30;
 PistonSolver::PistonSolver(const SimTK::MultibodySystem& system,
                            const SimTK::SimbodyMatterSubsystem& matter,
                            const SimTK::MobilizedBody& shaft, const SimTK::MobilizedBody& block,
-                           const std::vector<SimTK::MobilizedBody>& pistons,
-                           const std::vector<InlineJoint>& bores, double piston_length, double spin,
+                           const Pistons& pistons, double piston_length, double spin,
                            const State& state)
     : system_(system),
       matter_(matter),
@@ -39,12 +38,13 @@ PistonSolver::PistonSolver(const SimTK::MultibodySystem& system,
       block_(block),
       length_(piston_length),
       round_off_(kRoundOff * piston_length),
-      spin_(spin) {
-  for (std::size_t k = 0; k < pistons.size(); ++k) {
+      spin_(spin),
+      bores_(*pistons.all_bores) {
+  for (std::size_t k = 0; k < pistons.bodies.size(); ++k) {
     Piston piston;
-    piston.body = pistons[k];
-    piston.bore = bores[k];
-    piston.row = bores[k].first_row(state);
+    piston.body = pistons.bodies[k];
+    piston.bore = pistons.bores[k];
+    piston.row = pistons.bores[k].first_row(state);
     piston.u = piston.body.getFirstUIndex(state);
     piston.nu = piston.body.getNumU(state);
     piston.q = piston.body.getFirstQIndex(state);
@@ -157,11 +157,13 @@ double PistonSolver::solve_speeds(State& state) {
 void PistonSolver::solve_accelerations(const State& state, Vector& udot) {
   for (const Piston& piston : pistons_)
     for (int j = 0; j < piston.nu; ++j) udot[piston.u + j] = 0;
-  matter_.calcConstraintAccelerationErrors(state, udot, rates_);
+  matter_.calcBodyAccelerationFromUDot(state, udot, accelerations_);
+  bores_.acceleration_errors(state, accelerations_, errors_);
   const int first = shaft_.getFirstUIndex(state);
   const Vec3 shaft_acceleration(udot[first], udot[first + 1], udot[first + 2]);
   const Vec3 shaft_rate = shaft_.getBodyAngularVelocity(state);
-  for (const Piston& piston : pistons_) {
+  for (std::size_t k = 0; k < pistons_.size(); ++k) {
+    const Piston& piston = pistons_[k];
     double own = 0;
     if (piston.nu == 3) {
       // The spin stays: no part of the absolute angular acceleration lies along the axis.
@@ -169,7 +171,7 @@ void PistonSolver::solve_accelerations(const State& state, Vector& udot) {
       const Vec3 rate = piston.body.getBodyAngularVelocity(state);
       own = -dot(axis, shaft_acceleration + shaft_rate % (rate - shaft_rate));
     }
-    const Vec3 value = piston.inverse * Vec3(-rates_[piston.row], -rates_[piston.row + 1], own);
+    const Vec3 value = piston.inverse * Vec3(-errors_[2 * k], -errors_[2 * k + 1], own);
     for (int j = 0; j < piston.nu; ++j) udot[piston.u + j] = value[j];
   }
 }

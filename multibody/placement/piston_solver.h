@@ -1,16 +1,17 @@
 // Positions, speeds and accelerations of the pistons from Simbody's constraint equations.
 //
 // With shaft and block given, each piston has its own two equations (B on its bore axis): Simbody's
-// general projection, which solves all of them together, is not needed. Errors of position, speed
-// and acceleration are Simbody's; the matrix of a piston's equations is put together from its
-// joint's partial velocities, and a wrong one would show in those errors.
+// general projection, which solves all of them together, is not needed. Errors of position and
+// speed are Simbody's, those of acceleration of the same constraint; the matrix of a piston's
+// equations is put together from its joint's partial velocities, and a wrong one would show in
+// those errors.
 #pragma once
 
 #include <SimTKsimbody.h>
 
 #include <vector>
 
-#include "conventions.h"
+#include "scene/piston.h"
 
 namespace bentaxis::multibody {
 
@@ -22,8 +23,7 @@ class PistonSolver {
   ///               leaves it free (three mobilities)
   PistonSolver(const SimTK::MultibodySystem& system, const SimTK::SimbodyMatterSubsystem& matter,
                const SimTK::MobilizedBody& shaft, const SimTK::MobilizedBody& block,
-               const std::vector<SimTK::MobilizedBody>& pistons,
-               const std::vector<InlineJoint>& bores, double piston_length, double spin,
+               const Pistons& pistons, double piston_length, double spin,
                const SimTK::State& state);
 
   /// Newton's method from the positions in the state, shaft and block as they stand there. Leaves
@@ -75,7 +75,9 @@ class PistonSolver {
   std::vector<Piston> pistons_;
   double length_, round_off_, spin_;
   double turned_ = SimTK::Infinity;  // largest turn of a piston since the matrices were found, rad
-  SimTK::Vector rates_;
+  InlineJoints bores_;
+  SimTK::Vector_<SimTK::SpatialVec> accelerations_;
+  std::vector<double> errors_;
   std::vector<SimTK::Vec3> changes_;
 };
 

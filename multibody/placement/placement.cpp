@@ -48,7 +48,7 @@ Placement::Placement(PumpSystem& pump)
       bodies_(pump.bodies()),
       assembly_(pump.assembly()),
       dynamics_(pump.dynamics()),
-      solver_(system_, matter_, bodies_.shaft, bodies_.block, bodies_.pistons, pump.bores(),
+      solver_(system_, matter_, bodies_.shaft, bodies_.block, pump.pistons(),
               pump.pump().geometry.piston_length,
               pump.pistons_free_to_spin() ? pump.pump().piston.real->spin : 0, dynamics_) {}
 

@@ -97,9 +97,12 @@ Pistons add_pistons(const Geometry& geometry, const PistonBody& piston, Mobilize
     pistons.joint_points.push_back(joint);
     pistons.bore_points.push_back(bore);
     pistons.bodies.push_back(on_shaft);
-    pistons.bores.emplace_back(block, SimTK::UnitVec3(SimTK::ZAxis), bore, on_shaft,
-                               Vec3(0, 0, geometry.piston_length));
   }
+  const SimTK::UnitVec3 axis(SimTK::ZAxis);
+  pistons.all_bores.emplace(block, axis, pistons.bore_points, pistons.bodies,
+                            Vec3(0, 0, geometry.piston_length));
+  for (int k = 0; k < geometry.pistons; ++k)
+    pistons.bores.emplace_back(*pistons.all_bores, 2 * k, axis);
   return pistons;
 }
 

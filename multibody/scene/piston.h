@@ -3,10 +3,12 @@
 
 #include <SimTKsimbody.h>
 
+#include <optional>
 #include <vector>
 
 #include "bentaxis/pump/parameters.h"
 #include "conventions.h"
+#include "scene/inline_joints.h"
 
 namespace bentaxis::multibody {
 
@@ -30,6 +32,7 @@ PistonBody piston_body(const PumpParameters& pump, PistonInertia inertia);
 struct Pistons {
   std::vector<SimTK::MobilizedBody> bodies;
   std::vector<InlineJoint> bores;
+  std::optional<InlineJoints> all_bores;  ///< the constraint that they are parts of
   std::vector<SimTK::Vec3> joint_points;  ///< A in the shaft's frame
   std::vector<SimTK::Vec3> bore_points;   ///< a point of the bore's axis in the block's frame
 };

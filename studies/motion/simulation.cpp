@@ -311,17 +311,18 @@ class Study {
     double tolerance = this->tolerance();
     Trajectory run, loose, disturbed;
     r_.disturbance = kDisturbanceWithOil;
-    // The growth needs no balances, and no finer steps where the disturbance is far above their
-    // error.
+    // What is held against the run needs no balances, and the growth no finer steps where the
+    // disturbance is far above their error.
     constexpr double kFarAbove = 1e3;
     const bool coarse = kFarAbove * kLooser * tolerance <= (1 + kOneTime) * r_.disturbance;
     const auto run_beside = [&](const CoupledPump& pump, const Progress& before,
                                 const Progress& after) {
       coupled::Options options = options_for(kLooser * tolerance);
+      options.balances = false;
       loose = follow(pump, first, options, before);
       options = options_for(coarse ? kLooser * tolerance : tolerance);
-      options.disturbance = r_.disturbance;
       options.balances = false;
+      options.disturbance = r_.disturbance;
       disturbed = follow(pump, first, options, after);
     };
     if (r_.choice.unit) {
