@@ -77,7 +77,7 @@ class PortOpening {
     double from, length, root_area;
     bool quadratic, trailing;
     double passed(double length_deg) const;
-    double area(double past) const;
+    double area(double leading) const;
   };
   struct Groove {
     Frame frame;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
@@ -118,8 +119,13 @@ TEST(SolverGuard, OneForceThatIsNoNumberShowsInTheDifference) {
 // Simbody drops directions of its matrix for pistons of next to no mass: its own accelerations say
 // so.
 TEST(SolverGuard, SimbodyIsBlamedForWhatItsAccelerationsViolate) {
-  for (const char* name : {"hard/mass_1e-12", "hard/mass_1e-9", "hard/bearings_1_um"}) {
-    const Solved solved(case_of(name));
+  // At 1e-9 kg what is lost is about what is allowed, more or less by round-off.
+  Case light = case_of("hard/mass_1e-9");
+  light.pump.piston.mass = 1e-10;
+  for (const auto& [name, the_case] :
+       {std::pair("1e-12 kg", case_of("hard/mass_1e-12")), std::pair("1e-10 kg", light),
+        std::pair("1 um", case_of("hard/bearings_1_um"))}) {
+    const Solved solved(the_case);
     EXPECT_GT(solved.difference(), kLargestForceError) << name;
     EXPECT_EQ(fault_of(solved.difference(), solved.estimated()), Fault::multipliers) << name;
     EXPECT_THAT(solved.refusal(), HasSubstr("Simbody's constraint solver is inaccurate"));

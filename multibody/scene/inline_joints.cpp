@@ -1,5 +1,7 @@
 #include "scene/inline_joints.h"
 
+#include <array>
+
 namespace bentaxis::multibody {
 
 using SimTK::Array_;
@@ -27,10 +29,10 @@ struct Way {
 
 // Of the positions of a state.
 struct Geometry {
-  Vec3 axes[kAxes];         // in the ancestor's frame
-  std::vector<Vec3> lever;  // follower's point from the follower's origin,
-  std::vector<Vec3> arm;    // and from the base's
-  std::vector<Way> ways;    // of both axes of every follower
+  std::array<Vec3, kAxes> axes;  // in the ancestor's frame
+  std::vector<Vec3> lever;       // follower's point from the follower's origin,
+  std::vector<Vec3> arm;         // and from the base's
+  std::vector<Way> ways;         // of both axes of every follower
 };
 
 class InlineJointsImplementation : public SimTK::Constraint::Custom::Implementation {
