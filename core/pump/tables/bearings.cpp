@@ -70,26 +70,36 @@ std::vector<Parameter> ball_parameters(const std::string& bearing) {
   const Part* const part = &kBalls<kBearing>;
   return {number(bearing + "_balls", "", FIELD((c.ratings.*kBearing)->balls->balls), kNoUnit,
                  {3, 1000}, kRequired,
-                 "number of balls of a ball bearing: with it, deflection and L10r (ISO/TS 16281)",
+                 "number of balls in place of the " + bearing +
+                     " rollers: with it, deflection and L10r (ISO/TS 16281)",
                  {.part = part, .in_fmu = InFmu::absent}),
           number(bearing + "_ball_diameter_mm", "",
                  FIELD((c.ratings.*kBearing)->balls->ball_diameter), kMillimetres, kPositive,
-                 kRequired, "diameter of a ball", {.part = part, .in_fmu = InFmu::absent}),
+                 kRequired, "diameter of a ball in place of the " + bearing + " rollers",
+                 {.part = part, .in_fmu = InFmu::absent}),
           number(bearing + "_ball_pitch_diameter_mm", "",
                  FIELD((c.ratings.*kBearing)->balls->pitch_diameter), kMillimetres, kPositive,
-                 kRequired, "diameter of the circle of the balls' centres",
+                 kRequired,
+                 "diameter of the circle of the centres of the balls in place of the " + bearing +
+                     " rollers",
                  {.range_words = "above the ball's", .part = part, .in_fmu = InFmu::absent}),
           number(bearing + "_inner_groove_ratio", "",
                  FIELD((c.ratings.*kBearing)->balls->inner_groove_ratio), kNoUnit, {0.5, 1, true},
-                 {0.52}, "radius of the inner ring's groove over the ball's diameter",
+                 {0.52},
+                 "radius of the inner ring's groove over the ball's diameter, in place of the " +
+                     bearing + " rollers",
                  {.practice = "0.515..0.53", .part = part, .in_fmu = InFmu::absent}),
           number(bearing + "_outer_groove_ratio", "",
                  FIELD((c.ratings.*kBearing)->balls->outer_groove_ratio), kNoUnit, {0.5, 1, true},
-                 {0.53}, "radius of the outer ring's groove over the ball's diameter",
+                 {0.53},
+                 "radius of the outer ring's groove over the ball's diameter, in place of the " +
+                     bearing + " rollers",
                  {.practice = "0.52..0.54", .part = part, .in_fmu = InFmu::absent}),
           number(bearing + "_radial_clearance_um", "",
                  FIELD((c.ratings.*kBearing)->balls->radial_clearance), kMicrometres, kNotNegative,
-                 {0.0}, "radial clearance between the rings in operation",
+                 {0.0},
+                 "radial clearance in operation of the ball bearing in place of the " + bearing +
+                     " rollers",
                  {.range_words = "below a tenth of the ball's diameter",
                   .part = part,
                   .in_fmu = InFmu::absent})};
