@@ -2,7 +2,7 @@
 // case at constant speed until the block has settled, and compares its last turn with the frozen
 // lag. Prints a Markdown table (docs/transfer.md).
 //
-//   lag_over_speed [CASE] [axial inertia of the block, kg mm2] [turns]
+//   lag_over_speed [CASE [axial inertia of the block, kg mm2 [turns]]]     the inertia: the case's
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -34,11 +34,12 @@ double wall_force(const ChannelLayout& at, const auto& value) {
 
 void compare(const char* file, const std::string& inertia, int speed_rpm, int turns) {
   const double turn_s = 60.0 / speed_rpm;
-  const Case the_case =
-      read_case(file, {"operation.speed_rpm=" + std::to_string(speed_rpm),
-                       "block.axial_inertia_kg_mm2=" + inertia, "drive.kind=speed",
-                       "drive.duration_s=" + number_text(turns * turn_s),
-                       "drive.samples=" + std::to_string(turns * kRows)});
+  std::vector<std::string> changes = {"operation.speed_rpm=" + std::to_string(speed_rpm),
+                                      "drive.kind=speed",
+                                      "drive.duration_s=" + number_text(turns * turn_s),
+                                      "drive.samples=" + std::to_string(turns * kRows)};
+  if (!inertia.empty()) changes.push_back("block.axial_inertia_kg_mm2=" + inertia);
+  const Case the_case = read_case(file, changes);
   const PressureTrace pressure(the_case.pressure);
   const Trajectory run = analytic::simulate(the_case, the_case.analytic, pressure, {});
   const ResultTable& moved = run.table.results;
@@ -79,7 +80,7 @@ int main(int count, char** arguments) {
   try {
     const char* const file =
         count > 1 ? arguments[1] : BENTAXIS_SOURCE_DIR "/cases/bap63_tapered_pistons.toml";
-    const std::string inertia = count > 2 ? arguments[2] : "2500";
+    const std::string inertia = count > 2 ? arguments[2] : "";
     const int turns = count > 3 ? std::atoi(arguments[3]) : 20;
     std::puts(
         "| speed, rpm | frozen lag, mean, deg | largest difference, deg | rms, deg | largest wall "
