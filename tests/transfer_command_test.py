@@ -237,7 +237,8 @@ class TransferTest(ProgramTest):
                             f'transfer.clearance_deviation_file="{self.folder / "plays.csv"}"', "--steady", "--out", "none")
         self.assert_mentions(line, "--steady", "clearance_deviation_file")
         line = self.refused("simulate", self.case_of("rated_hydraulic"), "--set", "transfer.kind=cardan", "--set", "pump.tilt_deg=20", "--set",
-                            "pump.bore_circle_radius_mm=24.17", "--set", "drive.kind=speed", "--steady", "--out", "none")
+                            "pump.bore_circle_radius_mm=24.17", "--set", "drive.kind=speed", "--set", "drive.duration_s=0.01", "--set",
+                            "drive.samples=10", "--steady", "--out", "none")
         self.assert_mentions(line, "--steady", 'kind = "cardan"')
         line = self.refused("rattle", walls, *own, "--set", "block.axial_inertia_kg_mm2=2000", "--speeds", "500", "--delivery-bar", "150",
                             "--out", "none")
