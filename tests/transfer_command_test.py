@@ -216,6 +216,9 @@ class TransferTest(ProgramTest):
                                 "--check-points", 2, "--threads", 1, "--out", "rattle").out
         self.assertRegex(said, r"avoid|the pistons are loaded throughout")
         self.assertIn("Simbody agrees at 2 of 2 points", said)
+        self.assertNotIn("each sweep has one start", said)
+        one = self.run_program("rattle", walls, "--speeds", "1500", "--delivery-bar", "275", "--out", "one").out
+        self.assertIn("With one speed each sweep has one start", one)
         page = (self.folder / "rattle/report.html").read_text()
         self.assertIn("sum of the wall forces", page)
         self.assertNotIn("tooth force", page)

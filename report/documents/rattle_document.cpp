@@ -117,6 +117,11 @@ std::vector<std::string> answers_of(const RattleMap& map) {
                     [](const RattlePoint& point) { return !point.done(); }));
   const std::string open =
       unknown == 0 ? "" : fmt::format(" {} of its speeds could not be computed.", unknown);
+  // A sweep starts where it ended at the speed before.
+  const std::string starts =
+      speeds.size() > 1 ? ""
+                        : " With one speed each sweep has one start: another steady state is found "
+                          "with speeds on both sides of it.";
   return {at +
           (text.empty()
                ? fmt::format("the {} are loaded throughout the turn at all speeds of the map.",
@@ -124,7 +129,7 @@ std::vector<std::string> answers_of(const RattleMap& map) {
                : fmt::format("avoid {} rpm: the {} are not loaded throughout the turn (speeds of "
                              "the map).",
                              text, words(map).contacts)) +
-          open};
+          open + starts};
 }
 
 std::string against(RattleClass analytic, RattleClass multibody) {
