@@ -123,7 +123,7 @@ class ProgramTest(unittest.TestCase):
                    for key, parameter in schema.get("properties", {}).items()
                    if parameter.get("type") in ("number", "integer", "array")} - STRUCTURE
         self.assertGreater(len(numbers), 40)
-        without_effect = {name for base, name, _ in WITHOUT_EFFECT if base is RATED or base is RATED_BEARINGS}
+        without_effect = {name for base, name, _ in WITHOUT_EFFECT if base in (RATED, RATED_BEARINGS, BALL_BEARINGS)}
         rated = {name for name in numbers if Case(**RATED).line_of(name)} - HIDDEN_BY_PRESSURE - without_effect
         tried = rated.union(*(names for _, names in CONTROLS))
         self.assertEqual(numbers - tried - without_effect, set(), "forgotten")
@@ -1435,6 +1435,10 @@ RATINGS = {"bearings.tapered_dynamic_rating_kN": 105.0, "bearings.tapered_static
            "bearings.tapered_e": 0.83, "bearings.tapered_X": 0.4, "bearings.tapered_Y0": 0.4,
            "bearings.cylindrical_dynamic_rating_kN": 106.0, "bearings.cylindrical_static_rating_kN": 98.0}
 RATED_BEARINGS = {**RATED, **RATINGS}
+BALLS = {f"bearings.{bearing}_{key}": value for bearing in ("tapered", "cylindrical")
+         for key, value in (("balls", 9), ("ball_diameter_mm", 12.0), ("ball_pitch_diameter_mm", 60.0), ("inner_groove_ratio", 0.52),
+                            ("outer_groove_ratio", 0.53), ("radial_clearance_um", 5.0))}
+BALL_BEARINGS = {**RATED_BEARINGS, "bearings.tapered_rolling_element": '"ball"', "bearings.cylindrical_rolling_element": '"ball"', **BALLS}
 # Without effect at constant speed, whatever their size.
 WITHOUT_EFFECT = (
     (RATED, "shaft.axial_inertia_kg_mm2", 20000.0), (RATED, "block.axial_inertia_kg_mm2", 15000.0),
@@ -1442,6 +1446,7 @@ WITHOUT_EFFECT = (
     (REAL, "piston.joint_mass_fraction", 0.7), (LIGHT, "piston.spin_rpm", 900.0),
     (TEETH, "gear.dissipation_s_per_m", 0.1),
     *((RATED_BEARINGS, name, 2 * value) for name, value in RATINGS.items()),
+    *((BALL_BEARINGS, name, value + 1 if "balls" in name else 1.01 * value) for name, value in BALLS.items()),
     # Compliant teeth act where the motion is not given; rigid ones have nothing of this.
     *((base, f"gear.{key}", value) for base in (COMPLIANT, RATED)
       for key, value in (("stiffness_N_per_um", 300.0), ("stiffness_exponent", 1.5), ("dissipation_s_per_m", 0.1), ("backlash_um", 20.0))),
