@@ -284,7 +284,15 @@ TEST_P(EachEngine, SettingsAreThoseItSays) {
   options.settings = {GetParam() + ".colour=red"};
   EXPECT_THROW(compared(rated(4), options), InputError);
   options.settings = {GetParam() + "." + settings.front().name + "=none"};
-  EXPECT_EQ(compared(rated(4), options).failures().size(), 1U);
+  EXPECT_THROW(compared(rated(4), options), InputError);
+  for (const engines::Setting& setting : settings) {
+    EXPECT_EQ(setting.refusal(setting.values.front()), "") << setting.name;
+    EXPECT_NE(setting.refusal("-1"), "") << setting.name;
+    if (!setting.most.empty()) {
+      EXPECT_EQ(setting.refusal(setting.most), "") << setting.name;
+      EXPECT_NE(setting.refusal("1e99"), "") << setting.name;
+    }
+  }
 }
 
 TEST(Mechanisms, LoopsAreClosedInPositionVelocityAndAcceleration) {
