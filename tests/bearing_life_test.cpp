@@ -336,6 +336,11 @@ TEST(BallBearingLife, KeysAreHeldToEachOther) {
   EXPECT_THAT(why(with("bearings.cylindrical_radial_clearance_um=1200")),
               HasSubstr("tenth of the ball's diameter"));
   EXPECT_THAT(why(with("bearings.cylindrical_balls=2")), HasSubstr("cylindrical_balls"));
+  // Some of the balls' keys alone would be without effect.
+  EXPECT_THAT(why({"bearings.cylindrical_rolling_element=ball", "bearings.cylindrical_balls=6"}),
+              HasSubstr("cylindrical_balls=6: must have cylindrical_ball_diameter_mm beside it"));
+  EXPECT_THAT(why({"bearings.cylindrical_outer_groove_ratio=0.53"}),
+              HasSubstr("must have cylindrical_balls beside it"));
   // Factors of a taper are not those of balls.
   const std::vector<std::string> angular = {"bearings.tapered_rolling_element=ball"};
   EXPECT_THAT(why(angular), HasSubstr("tapered_e"));

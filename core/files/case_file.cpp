@@ -116,12 +116,25 @@ class CaseReader {
       read_key(in, table, parameter);
       check_rules(in, table, parameter.key);
     }
+    for (const Parameter& parameter : table.parameters)
+      if (parameter.part != nullptr && parameter.part->belongs_to != nullptr &&
+          in.has(parameter.key) && !parameter.part->exists(result_)) {
+        const Parameter* const missing = first_missing(in, table, parameter.part);
+        in.fail(parameter.key,
+                "must have " + (missing != nullptr ? missing->key : parameter.part->belongs_to) +
+                    " beside it");
+      }
   }
 
+  // The first key of a part that has no default and is not given; null where there is none.
+  static const Parameter* first_missing(TableReader& in, const Table& table, const Part* part) {
+    for (const Parameter& p : table.parameters)
+      if (p.part == part && !p.fallback.value && p.fallback.computed == nullptr && !in.has(p.key))
+        return &p;
+    return nullptr;
+  }
   static bool is_complete(TableReader& in, const Table& table, const Part* part) {
-    return std::all_of(table.parameters.begin(), table.parameters.end(), [&](const Parameter& p) {
-      return p.part != part || p.fallback.value || p.fallback.computed != nullptr || in.has(p.key);
-    });
+    return first_missing(in, table, part) == nullptr;
   }
 
   void check_rules(const TableReader& in, const Table& table, const std::string& after) const {

@@ -9,9 +9,12 @@ const Part kCylindricalRating = part_at([](auto& c) { return &c.ratings.cylindri
 
 // Internal geometry of a ball bearing.
 template <auto kBearing>
-const Part kBalls = part_at([](auto& c) {
-  return c.ratings.*kBearing ? &(c.ratings.*kBearing)->balls : nullptr;
-});
+const Part kBalls = [] {
+  Part part = part_at(
+      [](auto& c) { return c.ratings.*kBearing ? &(c.ratings.*kBearing)->balls : nullptr; });
+  part.belongs_to = "the ratings of the bearing";
+  return part;
+}();
 
 std::string same_bearings(const Case& c) {
   const Bearings& b = c.pump.bearings;

@@ -105,6 +105,9 @@ struct Part {
   bool (*exists)(const Case&) = nullptr;
   void (*create)(Case&) = nullptr;  ///< empty, to be filled in
   void (*remove)(Case&) = nullptr;  ///< where not needed, if not null: read, checked, unused
+  /// Where some of its required keys alone, or all of them without what it belongs to, are refused:
+  /// what it belongs to, in words.
+  const char* belongs_to = nullptr;
 };
 
 /// How forces grow with a number: with itself, or with the sine or cosine of an angle.
