@@ -486,16 +486,16 @@ std::string Picture::transfer_words() const {
       return fmt::format("universal joint at O2, phase {:.4g}\u00b0",
                          p_.transfer.phase() / kRadPerDegree);
     case TransferKind::double_cardan:
-      return fmt::format("double universal joint at O2, crosses {} mm from it, phase {:.4g}\u00b0",
+      return fmt::format("crosses {} mm from O2, phase {:.4g}\u00b0",
                          mm_text(p_.transfer.double_cardan->cross_distance),
                          p_.transfer.phase() / kRadPerDegree);
     case TransferKind::pistons:
       break;
   }
   const WallContact& wall = *p_.transfer.wall;
-  return fmt::format("D {} mm from A, clearance {} mm", mm_text(wall.from_joint),
-                     mm_text(wall.clearance)) +
-         (wall.deviation.empty() ? "" : " with deviations");
+  const std::string place = fmt::format("D {} mm from A, ", mm_text(wall.from_joint));
+  return place + (wall.deviation.empty() ? fmt::format("clearance {} mm", mm_text(wall.clearance))
+                                         : "own clearances");
 }
 
 // S1 against z1: x1 to the right, y1 upwards, positive angles to the left.
