@@ -647,8 +647,8 @@ std::vector<fs::path> find_references(const fs::path& root) {
       // A proposal of `bentaxis reference new`, which stands beside the reference that it is for.
       if (entry.filename().string().ends_with("_mapping.toml")) continue;
       if (!fs::is_directory(entry))
-        throw InputError(entry.string() + ": is not used: " + folder.string() + " has no " +
-                         kDescriptionName);
+        throw InputError(folder.string() + ": has no " + kDescriptionName + ", and its file " +
+                         entry.filename().string() + " is not used");
       visit(entry);
     }
   };

@@ -245,6 +245,13 @@ class Gaps(unittest.TestCase):
         _, result = score(header, rows[180:], "pendulum")
         self.assertEqual(result["gaps"], ["rows at 180 of 360 angles; none between -1 and 180 (theta_deg)"])
 
+    def test_the_description_stands_for_its_folder(self):
+        header, rows = curves("pendulum")
+        score(header, rows, "pendulum")
+        texts = [run("score", FOLDER / "table.csv", "--problem", REPO / "problems/pendulum" / name).stdout for name in ("", "problem.toml")]
+        self.assertIn("solved: ", texts[0])
+        self.assertEqual(*texts)
+
     def test_the_verdict_is_said_first(self):
         header, rows = curves("pendulum")
         score(header, rows[:180], "pendulum")

@@ -362,6 +362,13 @@ class ShippedCasesTest(WordsTest):
                          'bap63_ratd: neither a file nor a shipped case; did you mean "bap63_rated"?')
         for elsewhere in ("bap63_rated.toml", "./bap63_rated", "cases/bap63_rated"):  # a file is meant
             self.assertNotIn("shipped", self.refused("run", elsewhere, "--model", "analytic"))
+        # As the documents write it, without their folder.
+        self.assertIn("cases/bap63_rated.toml: cannot be read: no such file; the shipped case is bap63_rated",
+                      self.refused("run", "cases/bap63_rated.toml", "--model", "analytic"))
+
+    def test_a_case_of_a_study_has_a_name(self):
+        name, file = (self.run_program("show", case).stdout for case in ("four_transfers", self.case.parent / "studies/four_transfers.toml"))
+        self.assertEqual(name, file)
 
 
 class CompletionTest(WordsTest):

@@ -23,14 +23,16 @@ void Samples::instant(std::size_t row, Instant& instant) const {
 
 void require_constant_speed(const Case& the_case) {
   const TransferKind kind = the_case.pump.transfer.kind;
-  const auto refuse = [&](const std::string& value, const std::string& why) {
+  const auto refuse = [&](const std::string& value, const std::string& why,
+                          const std::string& instead = "") {
     throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") + "[pressure] " +
                      value + ": must be " + why + " beside [transfer] kind = \"" + to_string(kind) +
-                     "\" at constant speed");
+                     "\" at constant speed" + instead);
   };
   const bool pistons = kind == TransferKind::pistons;
   if (!the_case.pump.transfer.is_even() && the_case.pressure.kind == PressureKind::hydraulic)
-    refuse("kind = \"hydraulic\"", "\"ideal\" or \"curve\"");
+    refuse("kind = \"hydraulic\"", "\"ideal\" or \"curve\"",
+           "; bentaxis simulate follows the oil in time");
   if (pistons && the_case.pressure.kind == PressureKind::ideal &&
       the_case.pressure.transition_deg == 0)
     refuse("transition_deg = 0", "> 0");

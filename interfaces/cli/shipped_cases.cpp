@@ -49,8 +49,17 @@ std::vector<ShippedCase> cases_in(const fs::path& folder) {
 std::string case_file(const std::string& text, const std::optional<fs::path>& folder) {
   std::error_code error;
   const fs::path path = text;
-  if (text.empty() || path.has_parent_path() || path.has_extension() || fs::exists(path, error))
+  if (text.empty() || fs::exists(path, error)) return text;
+  if (path.has_parent_path() || path.has_extension()) {
+    // As the documents write it: cases/NAME.toml, which is here where the sources are.
+    if (folder && path.lexically_relative("cases") == path.filename() &&
+        fs::exists(*folder / path.filename(), error))
+      throw InputError(text + ": cannot be read: no such file; the shipped case is " +
+                       path.stem().string());
     return text;
+  }
+  if (folder && fs::exists(*folder / "studies" / (text + kEnding), error))
+    return (*folder / "studies" / (text + kEnding)).string();
   const std::vector<std::string> names = case_names(folder);
   if (std::find(names.begin(), names.end(), text) != names.end())
     return (*folder / (text + kEnding)).string();

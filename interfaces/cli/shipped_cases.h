@@ -22,10 +22,11 @@ std::vector<ShippedCase> cases_in(const std::filesystem::path& folder);
 /// Names of the cases of a folder, which are not read. Empty where there is no folder.
 std::vector<std::string> case_names(const std::optional<std::filesystem::path>& folder);
 
-/// The file that the text of a CASE means: an existing file, else the shipped case of this name.
-/// Text with a folder or an ending always means a file.
+/// The file that the text of a CASE means: an existing file, else the shipped case of this name, or
+/// that of a study. Text with a folder or an ending always means a file.
 /// @param folder  of the shipped cases, where there is one
-/// @throws InputError for a name that is neither
+/// @throws InputError for a name that is neither, and for a missing cases/NAME.toml where there is
+///         a shipped case of this name
 std::string case_file(const std::string& text, const std::optional<std::filesystem::path>& folder);
 
 /// "name: title" of each below the title of its group.

@@ -133,8 +133,9 @@ void read_mistakes(Problem& problem) {
 
 Problem read_problem(const fs::path& folder) {
   Problem problem;
-  problem.folder = folder;
-  problem.name = fs::absolute(folder / ".").parent_path().filename();
+  // The description stands for its folder.
+  problem.folder = folder.filename() == kDescription ? folder.parent_path() : folder;
+  problem.name = fs::absolute(problem.folder / ".").parent_path().filename();
   read_description(problem);
   read_curves(problem);
   read_checks(problem);
