@@ -377,6 +377,32 @@ TEST(MotionAnswers, AreThoseOfTheRows) {
   EXPECT_NEAR(a.beyond_plate->plate_mm, plate, 1e-12);
 }
 
+TEST(MotionAnswers, SayWhichWallIsLoadedMostAndWhenNoneIs) {
+  const Case the_case =
+      read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_tapered_pistons.toml",
+                {"drive.kind=speed", "drive.duration_s=1", "drive.samples=4"});
+  const ChannelLayout at(the_case.pump);
+  Trajectory run;
+  run.table = trajectory_table("analytic", at, *the_case.drive);
+  const double forces[4][2] = {{30, 40}, {0, 0}, {300, -400}, {5, 0}};
+  for (int row = 0; row < 4; ++row) {
+    std::vector<double> state(run.table.state_names.size(), 0);
+    state[static_cast<std::size_t>(StateColumn::time)] = 0.1 * row;
+    std::vector<double> values(at.size(), 0);
+    for (int axis = 0; axis < 2; ++axis) values[at.Rw(row, axis)] = forces[row][axis];
+    append_trajectory_row(run.table, state, values, {});
+    run.lag.push_back(0.01 * (row + 1));
+  }
+  const MotionAnswers answers = motion_answers(run, the_case);
+  ASSERT_TRUE(answers.walls.has_value());
+  EXPECT_NEAR(answers.walls->largest_N, 500, 1e-12);
+  EXPECT_NEAR(answers.walls->largest_s, 0.2, 1e-15);
+  EXPECT_EQ(answers.walls->piston, 3);
+  EXPECT_EQ(answers.walls->loose, 0.25);
+  EXPECT_NEAR(answers.walls->lag_deg[0], 0.01 / kRadPerDegree, 1e-12);
+  EXPECT_NEAR(answers.walls->lag_deg[1], 0.04 / kRadPerDegree, 1e-12);
+}
+
 TEST(MotionAnswers, SayNothingOfWhatIsNotThere) {
   Case the_case = read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_start_up.toml");
   const double plate = the_case.pump.port_plate->r4 * 1e3;
@@ -385,6 +411,7 @@ TEST(MotionAnswers, SayNothingOfWhatIsNotThere) {
   EXPECT_FALSE(motion_answers(run, the_case).beyond_plate.has_value());
   run.oil.reset();
   EXPECT_FALSE(motion_answers(run, the_case).delivery.has_value());
+  EXPECT_FALSE(motion_answers(run, the_case).walls.has_value());
   // What slows down makes a change too; it may begin where it has made it.
   const auto falling =
       motion_answers(run_of(the_case, {{1500, 0, 0, 0}, {500, 0, 0, 0}}), the_case);

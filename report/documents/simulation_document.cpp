@@ -543,6 +543,16 @@ std::vector<std::string> answers_of(const MotionAnswers& a) {
                     "of the time, {:.4g} bar.",
                     a.delivery->highest_bar, milliseconds(a.delivery->highest_s),
                     a.delivery->highest_bar - a.delivery->end_bar, a.delivery->end_bar));
+  if (a.walls) {
+    answers.push_back(fmt::format(
+        "Walls: largest force {:.4g} N at {} (piston {}); {}.", a.walls->largest_N,
+        milliseconds(a.walls->largest_s), a.walls->piston,
+        a.walls->loose == 0
+            ? "some wall pushes in every row"
+            : fmt::format("no wall pushes in {:.3g} % of the rows", 100 * a.walls->loose)));
+    answers.push_back(fmt::format("Block: {:.4g} to {:.4g} deg behind the shaft.",
+                                  a.walls->lag_deg[0], a.walls->lag_deg[1]));
+  }
   if (a.beyond_plate)
     answers.push_back(
         fmt::format("Not a possible motion of a pump in {:.3g} % of the rows: the film force acts "

@@ -1,9 +1,13 @@
 #include "bentaxis/study/motion_answers.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/results/channels.h"
 
 namespace bentaxis::study {
 namespace {
@@ -69,6 +73,38 @@ std::optional<MotionAnswers::BeyondPlate> beyond_plate(const Trajectory& run,
   return beyond;
 }
 
+std::optional<MotionAnswers::Walls> walls_of(const Trajectory& run, const Case& the_case) {
+  const ResultTable& results = run.table.results;
+  const ChannelLayout at(the_case.pump);
+  if (!at.has(Quantity::Rw)) return std::nullopt;
+  std::vector<std::array<std::size_t, 2>> columns;
+  for (int k = 0; k < at.pistons(); ++k) {
+    columns.push_back({results.find(at.channels()[at.Rw(k, 0)].name),
+                       results.find(at.channels()[at.Rw(k, 1)].name)});
+    if (std::max(columns.back()[0], columns.back()[1]) >= results.columns()) return std::nullopt;
+  }
+  MotionAnswers::Walls walls;
+  const auto [least, largest] = std::minmax_element(run.lag.begin(), run.lag.end());
+  walls.lag_deg[0] = *least / kRadPerDegree;
+  walls.lag_deg[1] = *largest / kRadPerDegree;
+  std::size_t loose = 0;
+  for (std::size_t row = 0; row < rows_of(run); ++row) {
+    bool pushes = false;
+    for (int k = 0; k < at.pistons(); ++k) {
+      const auto& [x, y] = columns[static_cast<std::size_t>(k)];
+      const double force = std::hypot(results.at(row, x), results.at(row, y));
+      pushes = pushes || force > 0;
+      if (!(force > walls.largest_N)) continue;
+      walls.largest_N = force;
+      walls.largest_s = time_of(run, row);
+      walls.piston = k + 1;
+    }
+    if (!pushes) ++loose;
+  }
+  walls.loose = static_cast<double>(loose) / static_cast<double>(rows_of(run));
+  return walls;
+}
+
 }  // namespace
 
 MotionAnswers motion_answers(const Trajectory& run, const Case& the_case) {
@@ -88,6 +124,7 @@ MotionAnswers motion_answers(const Trajectory& run, const Case& the_case) {
   answers.drive_work = run.record.work_of_drives;
   answers.delivery = delivery_of(run);
   answers.beyond_plate = beyond_plate(run, the_case);
+  answers.walls = walls_of(run, the_case);
   return answers;
 }
 

@@ -38,6 +38,15 @@ struct MotionAnswers {
     double plate_mm = 0;  ///< outer radius r4
   };
   std::optional<BeyondPlate> beyond_plate;
+
+  /// Of pistons that turn the block by the walls of their bores.
+  struct Walls {
+    double largest_N = 0, largest_s = 0;
+    int piston = 0;              ///< from 1
+    double loose = 0;            ///< share of the rows in which no wall pushes
+    double lag_deg[2] = {0, 0};  ///< of the block behind the shaft, least and largest
+  };
+  std::optional<Walls> walls;
 };
 
 MotionAnswers motion_answers(const Trajectory& run, const Case& the_case);
