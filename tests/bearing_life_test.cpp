@@ -312,7 +312,7 @@ TEST(BallBearingLife, NeedsLessLoadThanRollers) {
 }
 
 TEST(BallBearingLife, KeysAreHeldToEachOther) {
-  const auto why = [](std::vector<std::string> changes) -> std::string {
+  const auto why = [](const std::vector<std::string>& changes) -> std::string {
     try {
       rated(changes);
     } catch (const InputError& error) {
