@@ -25,7 +25,7 @@ std::string sensitivity_csv(const Sensitivities& found,
                             const std::optional<SensitivityCheck>& check);
 /// The parameters that matter most to each output.
 /// Which parameters an interruption has left out, in a sentence.
-std::string left_out_text(const Sensitivities& found);
+std::string left_out_text(const Sensitivities& s);
 std::string sensitivity_text(const Sensitivities& found,
                              const std::optional<SensitivityCheck>& check);
 
