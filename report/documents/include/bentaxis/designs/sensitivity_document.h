@@ -23,9 +23,9 @@ report::Document sensitivity_document(const Sensitivities& found,
 /// One row per output and parameter.
 std::string sensitivity_csv(const Sensitivities& found,
                             const std::optional<SensitivityCheck>& check);
-/// The parameters that matter most to each output.
 /// Which parameters an interruption has left out, in a sentence.
 std::string left_out_text(const Sensitivities& s);
+/// The parameters that matter most to each output.
 std::string sensitivity_text(const Sensitivities& found,
                              const std::optional<SensitivityCheck>& check);
 
