@@ -18,7 +18,9 @@ constexpr int kStatVersion = 1;
 constexpr int kStatVersion = 0;
 #endif
 
-// NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming): names of the linker
+// Names are the linker's, parameters those of the functions; the loader gives addresses as integers.
+// NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming)
+// NOLINTBEGIN(readability-non-const-parameter, performance-no-int-to-ptr)
 extern "C" {
 
 #define BENTAXIS_OLDEST_OF(name) asm(".symver oldest_" #name "," #name "@" BENTAXIS_OLDEST)
@@ -107,4 +109,5 @@ int __wrap__dl_find_object(void* address, dl_find_object* result) {
 }
 
 }  // extern "C"
+// NOLINTEND(readability-non-const-parameter, performance-no-int-to-ptr)
 // NOLINTEND(bugprone-reserved-identifier, readability-identifier-naming)
