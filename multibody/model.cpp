@@ -62,10 +62,10 @@ struct Model::Implementation {
 
   void check(const Instant& instant) const;
   void require_sizes(const Instant& instant, const std::vector<double>& values) const;
-  void evaluate(const Instant& instant, std::vector<double>& values, MotionChecks* checks);
+  void evaluate(const Instant& given, std::vector<double>& values, MotionChecks* checks);
   void place(const AxisMotion& shaft, const AxisMotion& block, const PortPressures& ports);
   void place_and_solve(const AxisMotion& shaft, const AxisMotion& block, const Instant& instant);
-  AxisMotion block_beside(const AxisMotion& shaft);
+  AxisMotion block_beside(const AxisMotion& shaft) const;
   LagRule evaluate_at_frozen_lag(double theta_deg, double speed, const PressureTrace& trace,
                                  const PortPressures& ports, std::vector<double>& values);
   void settle_teeth(const Instant& instant);
@@ -188,7 +188,7 @@ void Model::Implementation::place_and_solve(const AxisMotion& shaft, const AxisM
   }
 }
 
-AxisMotion Model::Implementation::block_beside(const AxisMotion& shaft) {
+AxisMotion Model::Implementation::block_beside(const AxisMotion& shaft) const {
   return joint_motion ? joint_motion->block(shaft) : shaft;
 }
 

@@ -18,8 +18,9 @@ constexpr int kStatVersion = 1;
 constexpr int kStatVersion = 0;
 #endif
 
-// Names are the linker's, parameters those of the functions; the loader gives addresses as
-// integers. NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming)
+// Names are the linker's, parameters those of the functions; addresses are the loader's integers.
+
+// NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming)
 // NOLINTBEGIN(readability-non-const-parameter, performance-no-int-to-ptr)
 extern "C" {
 
