@@ -486,7 +486,7 @@ std::string Picture::transfer_words() const {
       return fmt::format("universal joint at O2, phase {:.4g}\u00b0",
                          p_.transfer.phase() / kRadPerDegree);
     case TransferKind::double_cardan:
-      return fmt::format("crosses {} mm from O2, phase {:.4g}\u00b0",
+      return fmt::format("double joint at O2 \u00b1 {} mm, phase {:.4g}\u00b0",
                          mm_text(p_.transfer.double_cardan->cross_distance),
                          p_.transfer.phase() / kRadPerDegree);
     case TransferKind::pistons:
