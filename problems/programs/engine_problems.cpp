@@ -506,8 +506,8 @@ Rows one_sided_wall(const Data& d, const std::vector<double>& grid) {
   const Vector pads[] = {Vector(d("front_pads_x"), 0, 0), Vector(d("rear_pads_x"), 0, 0)};
   std::vector<Condition> guided;
   for (const Vector& pad : pads)
-    guided.push_back([&w, crosshead, on_line = w.together(crosshead, pad, -1, {0, 0, 0})](
-                         int level) -> Eigen::VectorXd { return on_line(level).segment<1>(1); });
+    guided.emplace_back([&w, crosshead, on_line = w.together(crosshead, pad, -1, {0, 0, 0})](
+                            int level) -> Eigen::VectorXd { return on_line(level).segment<1>(1); });
   for (const double theta : grid) {
     const double slope = -std::asin(d("crank_radius") * std::sin(theta) / d("rod_length"));
     w.at(crank) = {theta, d("speed"), 0};
@@ -560,7 +560,7 @@ std::string version() {
   State state;
   state.position = state.velocity = state.acceleration = {0};
   state.loads = {Wrench::Zero()};
-  for (int i = 0; i < 5; ++i) state.supports.push_back(Wrench(Wrench::Unit(i)));
+  for (int i = 0; i < 5; ++i) state.supports.emplace_back(Wrench::Unit(i));
   one.states = {state};
   const Answer answer = run_engine(engine, one, [](double) {});
   if (!answer.failure.empty()) throw std::runtime_error(answer.failure);
