@@ -325,7 +325,7 @@ struct Optimiser::Implementation {
   // Quantiles in the places of what they are of. @return why there are none
   std::string put_quantiles(std::span<const double> values, std::span<double> raw) const {
     std::vector<double> found(computed());  // as many as there may be
-    const std::string why = quantiles->evaluate(values, found);
+    std::string why = quantiles->evaluate(values, found);
     auto next = found.begin();
     for (std::size_t k = 0; k < computed(); ++k)
       if (plan.quantiles[k]) raw[k] = *next++;
