@@ -335,6 +335,32 @@ TEST(OilLaw, ConstantDensityIsOneDensityAndAModulus) {
   }
 }
 
+// The Jacobian is that of the rates, by differences. @return the rates
+std::vector<double> expect_jacobian_of_rates(const Network& network, double x,
+                                             const std::vector<double>& y) {
+  constexpr double load = 9e-6;
+  const int size = network.size();
+  std::vector<double> by_state(static_cast<std::size_t>(size) * size), by_load(size), low(size),
+      high(size), rates(size);
+  network.jacobian(x, y.data(), load, by_state.data(), by_load.data());
+  network.rates(x, y.data(), load, rates.data());
+  const double h = 1e-6;
+  for (int j = 0; j < size; ++j) {
+    auto to = y;
+    to[j] = y[j] - h;
+    network.rates(x, to.data(), load, low.data());
+    to[j] = y[j] + h;
+    network.rates(x, to.data(), load, high.data());
+    for (int i = 0; i < size; ++i) {
+      const double slope = (high[i] - low[i]) / (2 * h);
+      EXPECT_NEAR(slope, by_state[j * size + i],
+                  scaled(1e-5) * (1 + std::abs(slope) + std::abs(rates[i])))
+          << x << ": " << i << " by " << j;
+    }
+  }
+  return rates;
+}
+
 TEST(OilLaw, JacobianOfConstantDensityIsThatOfTheRates) {
   Case the_case = rated();
   the_case.hydraulics->oil_law = OilLaw::constant_density;
@@ -353,26 +379,8 @@ TEST(OilLaw, JacobianOfConstantDensityIsThatOfTheRates) {
     y[5] = 5.5;
     y[6] = -0.1;
     y[7] = 0.9;
-    const double load = 9e-6;
-    std::vector<double> by_state(static_cast<std::size_t>(size) * size), by_load(size), low(size),
-        high(size), rates(size);
-    network.jacobian(x, y.data(), load, by_state.data(), by_load.data());
-    network.rates(x, y.data(), load, rates.data());
+    const std::vector<double> rates = expect_jacobian_of_rates(network, x, y);
     for (int k = 0; k < 5; k += 2) expanding += rates[k] < 0;
-    const double h = 1e-6;
-    for (int j = 0; j < size; ++j) {
-      auto to = y;
-      to[j] = y[j] - h;
-      network.rates(x, to.data(), load, low.data());
-      to[j] = y[j] + h;
-      network.rates(x, to.data(), load, high.data());
-      for (int i = 0; i < size; ++i) {
-        const double slope = (high[i] - low[i]) / (2 * h);
-        EXPECT_NEAR(slope, by_state[j * size + i],
-                    scaled(1e-5) * (1 + std::abs(slope) + std::abs(rates[i])))
-            << x << ": " << i << " by " << j;
-      }
-    }
   }
   EXPECT_GT(expanding, 0);  // else nothing above is of the lowest pressure
 }
@@ -769,25 +777,7 @@ TEST(AirRelease, JacobianIsThatOfTheRates) {
     y[5] = 5.5;
     y[6] = -0.1;
     y[7] = 0.9;
-    const double load = 9e-6;
-    std::vector<double> by_state(static_cast<std::size_t>(size) * size), by_load(size), low(size),
-        high(size), rates(size);
-    network.jacobian(x, y.data(), load, by_state.data(), by_load.data());
-    network.rates(x, y.data(), load, rates.data());
-    const double h = 1e-6;
-    for (int j = 0; j < size; ++j) {
-      auto to = y;
-      to[j] = y[j] - h;
-      network.rates(x, to.data(), load, low.data());
-      to[j] = y[j] + h;
-      network.rates(x, to.data(), load, high.data());
-      for (int i = 0; i < size; ++i) {
-        const double slope = (high[i] - low[i]) / (2 * h);
-        EXPECT_NEAR(slope, by_state[j * size + i],
-                    scaled(1e-5) * (1 + std::abs(slope) + std::abs(rates[i])))
-            << x << ": " << i << " by " << j;
-      }
-    }
+    expect_jacobian_of_rates(network, x, y);
   }
 }
 
