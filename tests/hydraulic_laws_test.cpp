@@ -338,19 +338,19 @@ TEST(OilLaw, ConstantDensityIsOneDensityAndAModulus) {
 // The Jacobian is that of the rates, by differences. @return the rates
 std::vector<double> expect_jacobian_of_rates(const Network& network, double x,
                                              const std::vector<double>& y) {
-  constexpr double load = 9e-6;
+  constexpr double kLoad = 9e-6;
   const int size = network.size();
   std::vector<double> by_state(static_cast<std::size_t>(size) * size), by_load(size), low(size),
       high(size), rates(size);
-  network.jacobian(x, y.data(), load, by_state.data(), by_load.data());
-  network.rates(x, y.data(), load, rates.data());
+  network.jacobian(x, y.data(), kLoad, by_state.data(), by_load.data());
+  network.rates(x, y.data(), kLoad, rates.data());
   const double h = 1e-6;
   for (int j = 0; j < size; ++j) {
     auto to = y;
     to[j] = y[j] - h;
-    network.rates(x, to.data(), load, low.data());
+    network.rates(x, to.data(), kLoad, low.data());
     to[j] = y[j] + h;
-    network.rates(x, to.data(), load, high.data());
+    network.rates(x, to.data(), kLoad, high.data());
     for (int i = 0; i < size; ++i) {
       const double slope = (high[i] - low[i]) / (2 * h);
       EXPECT_NEAR(slope, by_state[j * size + i],
