@@ -16,7 +16,7 @@ import yaml
 REPO = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(REPO / "scripts"))
 sys.dont_write_bytecode = True
-from documentation import blocks, links, pages, prose, reference  # noqa: E402
+from documentation import blocks, links, notebooks, pages, prose, reference  # noqa: E402
 
 PROGRAM = r"""#!/bin/bash
 case "$*" in
@@ -24,9 +24,10 @@ case "$*" in
   "run --help") printf 'Options:\n  --out DIR  where\n  --model WORD\n' ;;
   "reference --help") printf 'Subcommands:\n  new   make\n' ;;
   "reference new --help") printf 'Options:\n  --from FILE\n' ;;
+  "cases --json") echo '[{"name": "bap63_rated", "file": "REPO/cases/bap63_rated.toml"}]' ;;
   *) echo "peak 12.34 N at 90 deg"; exit "${STATUS:-0}" ;;
 esac
-"""
+""".replace("REPO", str(REPO))
 
 
 class BlocksTest(unittest.TestCase):
@@ -121,6 +122,61 @@ class BlocksTest(unittest.TestCase):
         self.assertEqual(len(self.wrong_words("```\nbentaxis run x\n```\n")), 1)
         self.assertEqual(self.wrong_words("```\na = b\n```\n"), [])
         self.assertEqual(self.wrong_words("```toml\n[pump]\n```\n"), [])
+
+
+class NotebooksTest(unittest.TestCase):
+    PAGE = pathlib.PurePosixPath("docs/tutorials/9_a_test.md")
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.program = self.folder / "bin/bentaxis"
+        self.program.parent.mkdir()
+        self.program.write_text(PROGRAM)
+        self.program.chmod(self.program.stat().st_mode | stat.S_IXUSR)
+
+    def wrong(self, text):
+        results = notebooks.run(self.PAGE, text, self.folder, blocks.environment(self.folder, self.program, self.folder))
+        return [line for result in results for line in result.wrong]
+
+    def test_cells_share_a_folder_with_the_cases_and_print_what_the_page_says(self):
+        self.assertEqual(self.wrong("# Title\n\n```sh\nbentaxis run x > made; test -f my.toml -a -f cases/bap63_teeth.toml\n```\n\n```sh\ncat made\n```\n\n"
+                                    "```text\npeak 12.3 N at 90 deg\n```\n\n<!-- status: 1 -->\n```sh\nSTATUS=1 bentaxis run x\n```\n\n"
+                                    "```text\npeak 12.3 N at ...\n```\n\n```python\nprint(2 / 3)\n```\n\n```text\n0.667\n```\n"), [])
+
+    def test_what_differs_from_the_page_is_found(self):
+        for text, line in (("```sh\nbentaxis run x\n```\n```text\npeak 12.4 N at 90 deg\n```\n", "9_a_test.md:4: the page says \"peak 12.4"),
+                           ("```sh\nbentaxis run x\nfalse\ntrue\n```\n", "9_a_test.md:1: CalledProcessError"),
+                           ("<!-- status: 1 -->\n```sh\nSTATUS=2 bentaxis run x\n```\n", "the page says \"exit status 1\""),
+                           ("<!-- status: 1 -->\n```sh\nbentaxis run x\n```\n", "the page says \"exit status 1\""),
+                           ("```python\nraise ValueError('no')\n```\n", "9_a_test.md:1: ValueError: no")):
+            with self.subTest(text=text):
+                wrong = self.wrong(text)
+                self.assertEqual(len(wrong), 1, wrong)
+                self.assertIn(line, wrong[0])
+
+    def test_text_and_links(self):
+        notebook, block_of = notebooks.of_page(self.PAGE, "# Title\n\nSee [keys](../case_file.md#pump), ![a](../pictures/a.svg), [here](#x), <https://a.b>.\n\n"
+                                               "```sh\nls\n```\n\n```text\nnone\n```\n\n<!-- not run: a reason -->\n```sh\nmake\n```\n\nEnd\n")
+        cells = ["".join(cell["source"]) for cell in notebook["cells"]]
+        self.assertEqual([cell["cell_type"] for cell in notebook["cells"]], ["markdown", "code", "markdown", "code", "markdown"])
+        self.assertEqual(cells[2], "# Title\n\nSee [keys](../docs/case_file.html#pump), ![a](../docs/pictures/a.svg), [here](#x), <https://a.b>.")
+        self.assertEqual(cells[3], "%%bash -euo pipefail\nls")
+        self.assertEqual(cells[4], "```sh\nmake\n```\n\nEnd")
+        self.assertEqual({index: block.line for index, block in block_of.items()}, {3: 5})
+
+    def test_links_of_the_tutorials_lead_to_files(self):
+        count = 0
+        for page in notebooks.of_tutorials(REPO):
+            for cell in notebooks.of_page(page, (REPO / page).read_text(encoding="utf-8"))[0]["cells"]:
+                for _, target in links.of_markdown("".join(cell["source"])) if cell["cell_type"] == "markdown" else []:
+                    path = links.local_path(notebooks.FOLDER / "x", target)
+                    if path is not None:
+                        count += 1
+                        there = REPO / path.with_suffix(".md" if path.suffix == ".html" else path.suffix)
+                        self.assertTrue(there.is_file() or "reference" in path.parts, target)
+        self.assertGreater(count, 10)
 
 
 class OutputTest(unittest.TestCase):

@@ -36,6 +36,7 @@ class Block:
     marks: dict                     # "not run", "slow", "status" -> text behind the colon
     output: str | None = None       # of the text fence directly below
     output_line: int = 0
+    end: int = 0                    # line of the last fence, its output's included
 
     @property
     def where(self):
@@ -69,10 +70,10 @@ def of_page(page, text):
             body = "".join(line.removeprefix(indent) + "\n" for line in lines[at + 1:end])
             language = opening["language"]
             if language == "text" and before is not None and before.language in SHOWN and not marks:
-                before.output, before.output_line = body, at + 1
+                before.output, before.output_line, before.end = body, at + 1, end + 1
                 before = None
             else:
-                before = Block(page, at + 1, language, body, marks)
+                before = Block(page, at + 1, language, body, marks, end=end + 1)
                 blocks.append(before)
             at, marks = end, {}
         elif lines[at].strip():
@@ -188,29 +189,41 @@ def scratch_folder(root, folder):
     shutil.copyfile(root / "cases/bap63_rated.toml", folder / "my.toml")
 
 
-def run(block, folder, program, python_path):
-    environment = {"PATH": f"{program.parent}:/usr/local/bin:/usr/bin:/bin", "HOME": str(folder), "LANG": "C.UTF-8", "TERM": "dumb",
-                   "PYTHONPATH": str(python_path), "PYTHONDONTWRITEBYTECODE": "1", "MPLBACKEND": "Agg", "XDG_CACHE_HOME": str(folder / ".cache")}
-    command = ["bash", "-euo", "pipefail", "-c", block.text] if block.language == "sh" else ["/usr/bin/python3", "-c", block.text]
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+def environment(folder, program, python_path):
+    return {"PATH": f"{program.parent}:/usr/local/bin:/usr/bin:/bin", "HOME": str(folder), "TMPDIR": str(folder), "LANG": "C.UTF-8", "TERM": "dumb",
+            "PYTHONPATH": str(python_path), "PYTHONDONTWRITEBYTECODE": "1", "MPLBACKEND": "Agg", "XDG_CACHE_HOME": str(folder / ".cache")}
+
+
+def processor_seconds():
+    """Of all processes that this one started and that have ended."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+def judged(block, printed, failure, seconds, ending=""):
+    """The result of a block that printed this. `failure`: why it ended otherwise than the page says; `ending`: printed below its output."""
     wrong = []
-    try:
-        done = subprocess.run(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, timeout=SECONDS)
-        printed, status = done.stdout.decode("utf-8", "replace"), done.returncode
-    except subprocess.TimeoutExpired as late:
-        printed, status = (late.stdout or b"").decode("utf-8", "replace"), None
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    expected = int(block.marks.get("status", 0))
-    if status is None:
-        wrong.append(f"{block.where}: does not end within {SECONDS} s")
-    elif status != expected:
-        wrong.append(f"{block.where}: ends with status {status}, not {expected}:\n" + indented(printed[-2000:]))
-    elif block.output is not None:
-        difference = first_difference(block.output, printed)
+    if failure:
+        wrong.append(f"{block.where}: {failure}:\n" + indented(printed[-2000:]))
+    elif block.output is not None or ending:
+        difference = first_difference(("...\n" if block.output is None else block.output) + ending, printed)
         if difference:
             wrong.append(f"{block.page}:{block.output_line}: {difference}; it prints:\n" + indented(printed[:8000]))
-    return Result(block, printed, wrong, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    return Result(block, printed, wrong, seconds)
+
+
+def run(block, folder, program, python_path):
+    command = ["bash", "-euo", "pipefail", "-c", block.text] if block.language == "sh" else ["/usr/bin/python3", "-c", block.text]
+    before = processor_seconds()
+    expected = int(block.marks.get("status", 0))
+    try:
+        done = subprocess.run(command, cwd=folder, env=environment(folder, program, python_path), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, timeout=SECONDS)
+        printed = done.stdout.decode("utf-8", "replace")
+        failure = "" if done.returncode == expected else f"ends with status {done.returncode}, not {expected}"
+    except subprocess.TimeoutExpired as late:
+        printed, failure = (late.stdout or b"").decode("utf-8", "replace"), f"does not end within {SECONDS} s"
+    return judged(block, printed, failure, processor_seconds() - before)
 
 
 def indented(text):

@@ -1,7 +1,12 @@
-"""Hooks of mkdocs: inline code that names a command or a key of the case file links to its place in the generated reference."""
+"""Hooks of mkdocs: inline code that names a command or a key of the case file links to its place in the generated reference, and
+a tutorial to its notebook."""
 import pathlib
 import posixpath
 import re
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from documentation import notebooks  # noqa: E402
 
 COMMANDS = "docs/reference/commands/"
 KEYS = "docs/reference/case_keys"
@@ -38,4 +43,8 @@ def on_page_content(html, page, config, files):
             return match[0]
         return f'<a href="{posixpath.relpath(target, posixpath.dirname(here) or ".")}{anchor}">{match[0]}</a>'
 
-    return LINKED.sub(linked, html)
+    html = LINKED.sub(linked, html)
+    if notebooks.is_notebook(page.file.src_uri):
+        target = posixpath.relpath(str(notebooks.path_of(page.file.src_uri)), posixpath.dirname(here))
+        html = html.replace("</h1>", f'</h1>\n<p>This page as a <a href="{target}" download>Jupyter notebook</a>.</p>', 1)
+    return html
