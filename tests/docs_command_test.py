@@ -68,6 +68,14 @@ class DocsTest(unittest.TestCase):
         self.assertEqual(named, ["scripts/setup", "scripts/build_site"])
         for script in named:
             self.assertTrue(os.access(REPO / script, os.X_OK))
+        self.assertNotIn("as text", done.stderr)
+
+    def test_without_a_site_it_names_the_pages_as_text(self):
+        shutil.rmtree(self.page.parent)
+        texts = self.folder / "share/doc/bentaxis/docs/README.md"
+        texts.parent.mkdir()
+        texts.write_text("# Documentation\n")
+        self.assertIn(f"; its pages as text: {texts}\n", self.run_docs("--print", status=2).stderr)
 
     def test_a_build_has_that_of_its_source_tree(self):
         """An installed program knows nothing of the tree where it was built."""

@@ -22,13 +22,16 @@ namespace fs = std::filesystem;
 
 fs::path start_page() {
   std::error_code error;
-  const auto site = shipped_folder("site", fs::read_symlink("/proc/self/exe", error),
-                                   BENTAXIS_DOCUMENTS_FROM_BINARY);
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const auto site = shipped_folder("site", program, BENTAXIS_DOCUMENTS_FROM_BINARY);
   fs::path page = site.value_or(fs::path()) / "index.html";
-  if (!site || !fs::is_regular_file(page, error))
+  if (!site || !fs::is_regular_file(page, error)) {
+    const auto texts = shipped_folder("docs", program, BENTAXIS_DOCUMENTS_FROM_BINARY);
     throw InputError(
         "the documentation site is not there; in the source tree \"scripts/setup docs\" and "
-        "\"scripts/build_site\" build it, the Debian package holds it");
+        "\"scripts/build_site\" build it, the Debian package holds it" +
+        (texts ? "; its pages as text: " + (*texts / "README.md").string() : ""));
+  }
   return page;
 }
 
