@@ -109,6 +109,7 @@ def _printed(cell):
 def run(page, text, folder, environment):
     """The results of a page's blocks as its notebook, run by nbclient in `folder`. The first result is that of the preparation, and has
     the processor time of all."""
+    os.environ.setdefault("PYDEVD_DISABLE_FILE_VALIDATION", "1")  # this process and the kernel load a debugger, which warns
     import nbclient
     import nbformat
 
