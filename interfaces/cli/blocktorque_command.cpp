@@ -10,12 +10,12 @@
 namespace bentaxis::cli {
 namespace {
 
-struct Options {
+struct BlocktorqueOptions {
   CaseOption the_case;
   std::string hydraulic;
 };
 
-int blocktorque(const Options& options) {
+int blocktorque(const BlocktorqueOptions& options) {
   const auto rows = study::block_torques(
       options.the_case.read(),
       CaseOption{options.hydraulic, options.the_case.changes, options.the_case.strict}.read(),
@@ -27,7 +27,7 @@ int blocktorque(const Options& options) {
 }  // namespace
 
 Command add_blocktorque_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BlocktorqueOptions>();
   CommandParser command = program.subcommand(
       "blocktorque",
       "Explain the paper's torque from shaft to block against ADAMS: one change at a time");

@@ -10,12 +10,12 @@
 namespace bentaxis::cli {
 namespace {
 
-struct Options {
+struct CalibrateOptions {
   CaseOption the_case;
   study::MeanTorques wanted;  // Nm
 };
 
-int calibrate(const Options& options) {
+int calibrate(const CalibrateOptions& options) {
   for (const auto& step :
        study::calibrate_friction(options.the_case.read(), options.wanted, progress_of))
     std::printf(
@@ -29,7 +29,7 @@ int calibrate(const Options& options) {
 }  // namespace
 
 Command add_calibrate_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CalibrateOptions>();
   CommandParser command = program.subcommand(
       "calibrate", "Find the piston friction and shaft losses that give two mean torques");
   add_case(command, options->the_case);

@@ -27,7 +27,7 @@
 namespace bentaxis::cli {
 namespace {
 
-struct Options {
+struct CompareOptions {
   CaseOption the_case;
   ReportPlace place;
   std::string multibody_case;  // another case for the multibody model; empty = the same
@@ -41,7 +41,7 @@ struct Options {
 };
 
 // An option that changes nothing is a mistake: it would look as if an engine had run.
-void refuse_engine_options_without_effect(const Options& options) {
+void refuse_engine_options_without_effect(const CompareOptions& options) {
   const bool integrated = options.engines.way == study::EngineWay::integrated;
   const std::pair<bool, const char*> given[] = {
       {integrated, "--engine-way integrated"},
@@ -106,7 +106,7 @@ int judge_by_engines(const Case& given, const study::EngineOptions& options,
   return engines.agrees() ? kComputationFailed : kOutOfTolerance;
 }
 
-int compare(const Options& options) {
+int compare(const CompareOptions& options) {
   options.choice.refuse_without_effect(true);
   refuse_engine_options_without_effect(options);
   const auto names_transfer = [](const std::vector<std::string>& assumptions) {
@@ -195,7 +195,7 @@ int compare(const Options& options) {
 }  // namespace
 
 Command add_compare_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareOptions>();
   CommandParser command =
       program.subcommand("compare", "Run both models and report their differences");
   add_case(command, options->the_case);

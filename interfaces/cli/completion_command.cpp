@@ -12,7 +12,7 @@ namespace {
 
 const char* const kWords = "words";
 
-struct Options {
+struct CompletionOptions {
   std::string shell;
   std::vector<std::string> typed;
 };
@@ -20,7 +20,7 @@ struct Options {
 }  // namespace
 
 Command add_completion_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompletionOptions>();
   CommandParser command = program.subcommand(
       "completion", "Print the script for completion of commands, options and values in a shell");
   std::vector<std::string> shells = completed_shells();

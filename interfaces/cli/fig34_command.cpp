@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kMicro = 1e-6;
 
-struct Options {
+struct Fig34CommandOptions {
   CaseOption the_case;
   ReportPlace place;
   study::Fig34Options study;
@@ -32,7 +32,7 @@ std::vector<double> in_si(std::vector<double> values, const std::string& option,
   return values;
 }
 
-int run(Options& options) {
+int run(Fig34CommandOptions& options) {
   if (options.the_case.file.empty())
     options.the_case.file = case_file("bap63_rated", shipped_cases());
   study::Fig34Options& study = options.study;
@@ -56,7 +56,7 @@ int run(Options& options) {
 }  // namespace
 
 Command add_fig34_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<Fig34CommandOptions>();
   CommandParser command = program.subcommand(
       "fig34", "Contact laws of teeth that are consistent with the paper's Fig. 34");
   add_case(command, options->the_case, "bap63_rated");

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct FmuOptions {
   CaseOption the_case;
   std::string out, version = "2", drive, outputs;
   std::vector<fmu::Platform> platforms;
@@ -57,7 +57,7 @@ fs::path checked_place(const std::string& out) {
   return place;
 }
 
-void print(const fs::path& file, const Options& options, const fmu::UnitSummary& has) {
+void print(const fs::path& file, const FmuOptions& options, const fmu::UnitSummary& has) {
   std::cout << file.string() << ": FMI " << options.version
             << ".0, model exchange and co-simulation, " << has.needs << "\n"
             << "drive: " << sentence_of(options.unit.drive) << "\ninputs:";
@@ -74,7 +74,7 @@ void print(const fs::path& file, const Options& options, const fmu::UnitSummary&
             << "\nhow to try it: docs/fmu.md\n";
 }
 
-int make_unit(Options& options) {
+int make_unit(FmuOptions& options) {
   const fs::path place = checked_place(options.out);
   const Case the_case = options.the_case.read();
   options.unit.version = options.version == "3" ? fmu::Version::fmi3 : fmu::Version::fmi2;
@@ -93,7 +93,7 @@ int make_unit(Options& options) {
 }  // namespace
 
 Command add_fmu_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<FmuOptions>();
   CommandParser command = program.subcommand(
       "fmu", "Write the pump of a case as a Functional Mock-up Unit for system simulators");
   add_case(command, options->the_case);

@@ -16,12 +16,12 @@ namespace {
 
 constexpr double kLongRunAccuracy = 1e-6;
 
-struct Options {
+struct HardcasesOptions {
   std::string out = "out", catalogue, filter;
   int turns = 20;
 };
 
-int run(const Options& options) {
+int run(const HardcasesOptions& options) {
   const auto shipped = shipped_reference_data();
   if (options.catalogue.empty() && !shipped)
     throw InputError("no catalogue is installed with this program: name one with --catalogue");
@@ -50,7 +50,7 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_hardcases_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<HardcasesOptions>();
   CommandParser command = program.subcommand(
       "hardcases", "Run the catalogue of hard cases: digits achieved and predicted, refusals");
   add_out(command, options->out, "hardcases.html, .json, .csv and .md");

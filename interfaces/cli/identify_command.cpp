@@ -11,7 +11,7 @@
 namespace bentaxis::cli {
 namespace {
 
-struct Options {
+struct IdentifyCommandOptions {
   CaseOption the_case;
   ReportPlace place;
   std::vector<std::string> data, unknowns;
@@ -20,7 +20,7 @@ struct Options {
   designs::IdentifyOptions identify;
 };
 
-int identify(const Options& options, const CommandParser& command) {
+int identify(const IdentifyCommandOptions& options, const CommandParser& command) {
   if (options.fit_only)
     for (const char* name : {"--steps", "--draws", "--measured"})
       if (command.given(name))
@@ -57,7 +57,7 @@ int identify(const Options& options, const CommandParser& command) {
 }  // namespace
 
 Command add_identify_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<IdentifyCommandOptions>();
   CommandParser command = program.subcommand(
       "identify", "Determine parameters from printed numbers, windows and records, and how well");
   add_case(command, options->the_case);

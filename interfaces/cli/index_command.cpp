@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct IndexOptions {
   std::string folder, out;
 };
 
@@ -47,7 +47,7 @@ std::string text_of(const fs::path& file) {
   }
 }
 
-int index(const Options& options) {
+int index(const IndexOptions& options) {
   const fs::path folder = options.folder;
   const fs::path out = options.out.empty() ? folder : fs::path(options.out);
   const fs::path own = fs::weakly_canonical(out) / "index.json";
@@ -99,7 +99,7 @@ int index(const Options& options) {
 }  // namespace
 
 Command add_index_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<IndexOptions>();
   CommandParser command =
       program.subcommand("index", "One page over all reports below a folder, the worst first");
   command.option("DIR", options->folder, "directory with reports in its subdirectories").required();

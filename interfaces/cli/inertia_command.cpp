@@ -18,7 +18,7 @@
 namespace bentaxis::cli {
 namespace {
 
-struct Options {
+struct InertiaCommandOptions {
   CaseOption the_case;
   ReportPlace place;
   std::string speeds;
@@ -32,7 +32,7 @@ std::pair<double, double> range_of(const std::vector<double>& range, const std::
   return {range[0], range[1]};
 }
 
-int run(const Options& options) {
+int run(const InertiaCommandOptions& options) {
   const Case as_read = options.the_case.read();
   ReportFolders folders(options.place);
   const study::InertiaStudy result = study::run_inertia_study(as_read, options.study, progress_of);
@@ -57,7 +57,7 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_inertia_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InertiaCommandOptions>();
   CommandParser command = program.subcommand(
       "inertia", "Error of the reactions from treating the pistons as two point masses");
   add_case(command, options->the_case);

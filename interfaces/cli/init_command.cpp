@@ -12,13 +12,13 @@
 namespace bentaxis::cli {
 namespace {
 
-struct Options {
+struct InitOptions {
   CaseOption the_case;
   std::string folder;
   std::string ci = "both";
 };
 
-int init(const Options& options) {
+int init(const InitOptions& options) {
   CaseOption wanted = options.the_case;
   if (wanted.file.empty()) wanted.file = case_file("bap63_rated", shipped_cases());
   const auto chosen = [&](const char* system) {
@@ -35,7 +35,7 @@ int init(const Options& options) {
 }  // namespace
 
 Command add_init_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InitOptions>();
   CommandParser command = program.subcommand(
       "init", "Write a project: a case, a reference made from it, job files for CI, a README");
   command.option("dir", options->folder, "new folder").required().text("DIR");

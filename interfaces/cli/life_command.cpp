@@ -11,13 +11,13 @@
 namespace bentaxis::cli {
 namespace {
 
-struct Options {
+struct LifeOptions {
   CaseOption the_case;
   ReportPlace place;
   std::string duty;
 };
 
-int life(const Options& options) {
+int life(const LifeOptions& options) {
   const Case the_case = options.the_case.read();
   const designs::DutyCycle duty = options.duty.empty()
                                       ? designs::DutyCycle()
@@ -38,7 +38,7 @@ int life(const Options& options) {
 }  // namespace
 
 Command add_life_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<LifeOptions>();
   CommandParser command =
       program.subcommand("life", "Rating life of the bearings after ISO 281, by both models");
   add_case(command, options->the_case);

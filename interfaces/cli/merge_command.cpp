@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct MergeOptions {
   ReportPlace place;
   std::vector<std::string> folders, formats;
 };
@@ -24,7 +24,7 @@ fs::path blocks_in(const fs::path& named) {
   return fs::is_directory(parts_in(named)) ? parts_in(named) : named;
 }
 
-int merge(const Options& options) {
+int merge(const MergeOptions& options) {
   const designs::SweepFormats formats = formats_of(options.formats);
   std::vector<fs::path> sources(options.folders.begin(), options.folders.end());
   std::transform(sources.begin(), sources.end(), sources.begin(), blocks_in);
@@ -50,7 +50,7 @@ int merge(const Options& options) {
 }  // namespace
 
 Command add_merge_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MergeOptions>();
   CommandParser command =
       program.subcommand("merge", "Results of a sweep that was computed in parts (sweep --part)");
   command.option("OUT", options->place.out, "folder of the parts and of the results").required();

@@ -19,7 +19,7 @@
 namespace bentaxis::cli {
 namespace {
 
-struct Options {
+struct OptimiseOptions {
   CaseOption the_case;
   ReportPlace place;
   std::vector<std::string> vary;
@@ -29,7 +29,7 @@ struct Options {
   designs::OptimiseRequest request;
 };
 
-designs::OptimiseRequest request_of(const Options& options, const CommandParser& command) {
+designs::OptimiseRequest request_of(const OptimiseOptions& options, const CommandParser& command) {
   designs::OptimiseRequest request;
   if (!options.study.empty()) request = designs::read_optimise_request(options.study);
   const auto varied = varied_of(options.vary);
@@ -58,7 +58,7 @@ designs::OptimiseRequest request_of(const Options& options, const CommandParser&
   return request;
 }
 
-int optimise(const Options& options, const CommandParser& command, const Ranks& ranks) {
+int optimise(const OptimiseOptions& options, const CommandParser& command, const Ranks& ranks) {
   if (designs::search_libraries().empty())
     throw InputError(
         "optimise: this program was built without pagmo and NLopt; install libpagmo-dev and "
@@ -129,7 +129,7 @@ int optimise(const Options& options, const CommandParser& command, const Ranks& 
 }  // namespace
 
 Command add_optimise_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<OptimiseOptions>();
   CommandParser command = program.subcommand(
       "optimise", "Find the best designs: objectives, constraints, any parameters");
   add_case(command, options->the_case);

@@ -13,12 +13,12 @@
 namespace bentaxis::cli {
 namespace {
 
-struct Options {
+struct PaperOptions {
   ReportPlace place;
   std::string list;
 };
 
-int paper(const Options& options) {
+int paper(const PaperOptions& options) {
   const auto data = shipped_reference_data();
   if (!data) throw InputError("the shipped cases are not there");
   const study::PaperFigures list = study::read_paper_figures(
@@ -39,7 +39,7 @@ int paper(const Options& options) {
 }  // namespace
 
 Command add_paper_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PaperOptions>();
   CommandParser command = program.subcommand(
       "paper", "The paper's curves and drawings by both models, in its printed axes");
   add_report(command, options->place, "paper.html, paper.json and paper.csv");

@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kMaxTestPoints = 100;  // speeds, pressures of a test of the displacement
 
-struct Options {
+struct PressureOptions {
   CaseOption the_case;
   ReportPlace place;
   std::string overlay, published, delivery, suction_speed, test_speeds, test_pressures;
@@ -50,7 +50,7 @@ struct DisplacementTest {
   std::vector<double> speeds, pressures;
 };
 
-std::optional<DisplacementTest> displacement_test(const Options& options, const Case& the_case) {
+std::optional<DisplacementTest> displacement_test(const PressureOptions& options, const Case& the_case) {
   if (!options.derived_displacement) {
     if (!options.test_speeds.empty() || !options.test_pressures.empty())
       throw InputError("--test-speeds and --test-pressures need --derived-displacement");
@@ -72,7 +72,7 @@ std::optional<DisplacementTest> displacement_test(const Options& options, const 
   return test;
 }
 
-int pressure(const Options& options) {
+int pressure(const PressureOptions& options) {
   Case read = options.the_case.read();
   study::require_hydraulic(read);
   std::optional<Case> second;
@@ -148,7 +148,7 @@ int pressure(const Options& options) {
 }  // namespace
 
 Command add_pressure_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PressureOptions>();
   CommandParser command = program.subcommand(
       "pressure", "Compute chamber and delivery pressures, flows and the torque they need");
   add_case(command, options->the_case);

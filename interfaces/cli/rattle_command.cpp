@@ -19,7 +19,7 @@
 namespace bentaxis::cli {
 namespace {
 
-struct Options {
+struct RattleCommandOptions {
   CaseOption the_case;
   ReportPlace place;
   std::string speeds, delivery;
@@ -36,7 +36,7 @@ std::string origin_of(const Case& the_case, const study::RattleOptions& options)
          ", " + study::options_text(options);
 }
 
-int rattle(const Options& options) {
+int rattle(const RattleCommandOptions& options) {
   study::RattleOptions rattle = options.rattle;
   constexpr double kMinSpeed = 1;  // rpm
   rattle.speed_rpm = values_in("--speeds", options.speeds, "rpm", kMinSpeed);
@@ -97,7 +97,7 @@ int rattle(const Options& options) {
 }  // namespace
 
 Command add_rattle_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RattleCommandOptions>();
   CommandParser command = program.subcommand(
       "rattle",
       "Map of gear or piston contact: loaded, reversing, out of contact, impacts on both sides");

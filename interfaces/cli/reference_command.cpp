@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ReferenceOptions {
   CaseOption the_case;
   std::string from, sheet, mapping, source, out, folder;
   bool accept = false;
@@ -25,7 +25,7 @@ struct Options {
   int samples = study::kGoldenSamples;
 };
 
-int make_new(const Options& options) {
+int make_new(const ReferenceOptions& options) {
   const std::string stem = "reference_" + fs::path(options.the_case.file).stem().string();
   const fs::path out = options.out.empty() ? stem : options.out;
   const bool changed = !options.the_case.changes.empty();
@@ -72,7 +72,7 @@ int make_new(const Options& options) {
   return kDone;
 }
 
-int make_golden(const Options& options) {
+int make_golden(const ReferenceOptions& options) {
   for (const auto& path :
        study::make_golden(options.the_case.read(), !options.the_case.changes.empty(),
                           options.samples, options.out, progress_of))
@@ -80,7 +80,7 @@ int make_golden(const Options& options) {
   return kDone;
 }
 
-int update(const Options& options) {
+int update(const ReferenceOptions& options) {
   const study::GoldenSet set = study::find_golden(options.folder);
   int changed = 0;
   for (std::size_t i = 0; i < set.golden.size(); ++i) {
@@ -107,7 +107,7 @@ int update(const Options& options) {
 }  // namespace
 
 Command add_reference_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReferenceOptions>();
   CommandParser command =
       program.subcommand("reference", "Make reference data for regress, and update golden curves");
   command.require_subcommand();

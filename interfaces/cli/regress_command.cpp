@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct RegressOptions {
   std::string folder, junit, html, json, filter;
   ReportPlace place;
 };
@@ -51,7 +51,7 @@ void write(const std::string& file, const std::string& content) {
   folder.commit();
 }
 
-int regress(const Options& options) {
+int regress(const RegressOptions& options) {
   const auto shipped = shipped_reference_data();
   if (options.folder.empty() && !shipped)
     throw InputError("no reference data are installed with this program: name a folder");
@@ -113,7 +113,7 @@ int regress(const Options& options) {
 }  // namespace
 
 Command add_regress_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RegressOptions>();
   CommandParser command = program.subcommand(
       "regress", "Compare both models with stored curves: the shipped reference data or your own");
   command.option("dir", options->folder, "directory with references (default: the shipped set)")

@@ -18,7 +18,7 @@
 namespace bentaxis::cli {
 namespace {
 
-struct Options {
+struct RunCommandOptions {
   CaseOption the_case;
   std::string out = "out";
   study::Model model = study::Model::analytic;
@@ -46,7 +46,7 @@ int finish(OutputFolder& folder, const std::string& name, const std::vector<std:
 }
 
 // Reactions at given states.
-int run_states(const Options& options, const study::PreparedCase& ready,
+int run_states(const RunCommandOptions& options, const study::PreparedCase& ready,
                const study::RunOptions& run_options, const study::ChannelChoice& channels,
                OutputFolder& folder) {
   std::vector<Channel> there = ChannelLayout(ready.the_case.pump).channels();
@@ -68,7 +68,7 @@ int run_states(const Options& options, const study::PreparedCase& ready,
   return finish(folder, ready.the_case.name, summary.answers());
 }
 
-int run(const Options& options) {
+int run(const RunCommandOptions& options) {
   const bool analytic = options.model == study::Model::analytic;
   const bool driven = options.choice.way == study::Way::driven;
   const bool states = !options.states.empty();
@@ -151,7 +151,7 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_run_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunCommandOptions>();
   CommandParser command = program.subcommand("run", "Run one model and write its curves as CSV");
   add_case(command, options->the_case);
   command.choice("--model", options->model, {"analytic", "multibody"}, "model that computes")

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ScoreOptions {
   std::string file, problem, badge;
   std::optional<double> tolerance;
   bool json = false;
@@ -34,7 +34,7 @@ study::Problem problem_of(const std::string& text) {
   return study::read_problem(*folder / text);
 }
 
-int score(const Options& options) {
+int score(const ScoreOptions& options) {
   const study::Problem problem = problem_of(options.problem);
   const study::Score result = study::score(problem, read_table(options.file), options.tolerance);
   std::fputs(
@@ -48,7 +48,7 @@ int score(const Options& options) {
 }  // namespace
 
 Command add_score_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ScoreOptions>();
   CommandParser command = program.subcommand(
       "score",
       "Score a table of reactions that any program computed: digits of each column against a "

@@ -13,7 +13,7 @@
 namespace bentaxis::cli {
 namespace {
 
-struct Options {
+struct SensitivityOptions {
   CaseOption the_case;
   ReportPlace place;
   std::vector<std::string> outputs, parameters;
@@ -24,7 +24,7 @@ struct Options {
 const std::vector<std::string> kOutputs = {"mean:Td", "peak:Rb1", "peak:Rb2", "peak:Rs",
                                            "peak:Rc", "peak:Rcn", "min:Fh"};
 
-int sensitivity(const Options& options) {
+int sensitivity(const SensitivityOptions& options) {
   const Case base = options.the_case.read();
   std::vector<designs::Output> outputs;
   for (const std::string& name : options.outputs.empty() ? kOutputs : options.outputs)
@@ -67,7 +67,7 @@ int sensitivity(const Options& options) {
 }  // namespace
 
 Command add_sensitivity_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SensitivityOptions>();
   CommandParser command = program.subcommand(
       "sensitivity", "Derivatives of any output with respect to any parameter of a case");
   add_case(command, options->the_case);

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ShowOptions {
   CaseOption the_case;
   std::string out, figures;
 
@@ -37,7 +37,7 @@ void write_picture(const Case& the_case, const std::string& file) {
   std::printf("%s\n", file.c_str());
 }
 
-int show(const Options& options) {
+int show(const ShowOptions& options) {
   const Case the_case = options.the_case.read();
   std::optional<ReportFolders> report;
   std::optional<OutputFolder> figures;
@@ -77,7 +77,7 @@ int show(const Options& options) {
 }  // namespace
 
 Command add_show_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ShowOptions>();
   CommandParser command =
       program.subcommand("show",
                          "Describe the pump of a case with its plausibility warnings and draw it "

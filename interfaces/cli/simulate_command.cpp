@@ -15,7 +15,7 @@
 namespace bentaxis::cli {
 namespace {
 
-struct Options {
+struct SimulateOptions {
   CaseOption the_case;
   ReportPlace place;
   std::string model;  ///< "": both
@@ -24,7 +24,7 @@ struct Options {
   UnitOption unit;
 };
 
-int simulate(const Options& options, const CommandParser& command) {
+int simulate(const SimulateOptions& options, const CommandParser& command) {
   study::SimulationChoice choice = options.choice;
   if (options.model == "analytic") choice.only = study::Model::analytic;
   if (options.model == "multibody") choice.only = study::Model::multibody;
@@ -62,7 +62,7 @@ int simulate(const Options& options, const CommandParser& command) {
 }  // namespace
 
 Command add_simulate_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SimulateOptions>();
   CommandParser command = program.subcommand(
       "simulate",
       "Integrate the motion of shaft and block in time by both models and compare them");

@@ -19,7 +19,7 @@
 namespace bentaxis::cli {
 namespace {
 
-struct Options {
+struct SweepOptions {
   CaseOption the_case;
   ReportPlace place;
   PlanOptions plan;
@@ -29,7 +29,7 @@ struct Options {
 };
 
 // Which blocks a rank of a part computes.
-designs::SweepShare share_of(const Options& options, const Ranks& ranks) {
+designs::SweepShare share_of(const SweepOptions& options, const Ranks& ranks) {
   designs::SweepShare share = options.share;
   share.rank = static_cast<std::size_t>(ranks.rank());
   share.ranks = static_cast<std::size_t>(ranks.size());
@@ -47,7 +47,7 @@ designs::SweepShare share_of(const Options& options, const Ranks& ranks) {
   return share;
 }
 
-int sweep(const Options& options, const CommandParser& command, const Ranks& ranks) {
+int sweep(const SweepOptions& options, const CommandParser& command, const Ranks& ranks) {
   const bool first = ranks.rank() == 0;
   const designs::SweepRequest request = request_of(options.plan, command);
   const designs::SweepShare share = share_of(options, ranks);
@@ -96,7 +96,7 @@ int sweep(const Options& options, const CommandParser& command, const Ranks& ran
 }  // namespace
 
 Command add_sweep_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SweepOptions>();
   CommandParser command = program.subcommand(
       "sweep",
       "Outputs of many designs: grids and samples of any parameters, on any number of cores");

@@ -12,13 +12,13 @@
 namespace bentaxis::cli {
 namespace {
 
-struct Options {
+struct TradeoffCommandOptions {
   CaseOption the_case;
   ReportPlace place;
   study::TradeoffOptions tradeoff;
 };
 
-int tradeoff(const Options& options) {
+int tradeoff(const TradeoffCommandOptions& options) {
   const Case the_case = study::prepare(options.the_case.read(), progress_of).the_case;
   ReportFolders folders(options.place);
   const study::TradeoffStudy result =
@@ -34,7 +34,7 @@ int tradeoff(const Options& options) {
 }  // namespace
 
 Command add_tradeoff_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TradeoffCommandOptions>();
   CommandParser command = program.subcommand(
       "tradeoff", "Time every model, scene, integrator and accuracy on a case against its error");
   add_case(command, options->the_case);

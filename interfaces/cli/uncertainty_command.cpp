@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kMaxSamples = 10'000'000;
 
-struct Options {
+struct UncertaintyCommandOptions {
   CaseOption the_case;
   ReportPlace place;
   std::vector<std::string> outputs, varied;  // NAME=DISTRIBUTION
@@ -38,7 +38,7 @@ void vary(Case& the_case, const std::string& text) {
   all.push_back({name, text.substr(equals + 1)});
 }
 
-int uncertainty(const Options& options) {
+int uncertainty(const UncertaintyCommandOptions& options) {
   Case the_case = options.the_case.read();
   std::set<std::string> varied;
   for (const std::string& text : options.varied) {
@@ -72,7 +72,7 @@ int uncertainty(const Options& options) {
 }  // namespace
 
 Command add_uncertainty_command(CommandParser program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<UncertaintyCommandOptions>();
   CommandParser command =
       program.subcommand("uncertainty", "Uncertainty of results from distributions of parameters");
   add_case(command, options->the_case);
