@@ -50,7 +50,8 @@ struct DisplacementTest {
   std::vector<double> speeds, pressures;
 };
 
-std::optional<DisplacementTest> displacement_test(const PressureOptions& options, const Case& the_case) {
+std::optional<DisplacementTest> displacement_test(const PressureOptions& options,
+                                                  const Case& the_case) {
   if (!options.derived_displacement) {
     if (!options.test_speeds.empty() || !options.test_pressures.empty())
       throw InputError("--test-speeds and --test-pressures need --derived-displacement");
