@@ -14,10 +14,10 @@
 namespace bentaxis::cli {
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;
+volatile std::sig_atomic_t signalled = 0;
 
 void on_signal(int signal) {
-  interrupted = 1;
+  signalled = 1;
   std::signal(signal, SIG_DFL);  // a second one ends the program at once
 }
 
@@ -30,7 +30,7 @@ void watch_for_interruption() {
 }
 
 void stop_if_interrupted() {
-  if (interrupted != 0) throw Interrupted();
+  if (signalled != 0) throw Interrupted();
 }
 
 Progress progress_of(const std::string& job) {
@@ -39,7 +39,7 @@ Progress progress_of(const std::string& job) {
   const auto begun = Clock::now();
   auto shown = std::make_shared<Clock::time_point>(begun);
   return [=](double fraction) {
-    if (interrupted != 0) {
+    if (signalled != 0) {
       if (terminal) std::fputs("\r\033[K", stderr);
       throw Interrupted();
     }

@@ -17,7 +17,7 @@ using Index = Eigen::Index;
 constexpr double kOpen = 0.95, kPair = 0.98;
 constexpr double kEqual = 0.05;  // weights this near to each other are one
 
-double spread_of(const Unknown& u) {
+double width_of(const Unknown& u) {
   if (!u.prior) return (u.high - u.low) / std::sqrt(12.0);
   return std::min(u.prior->standard_deviation(), (u.high - u.low) / std::sqrt(12.0));
 }
@@ -131,7 +131,7 @@ Information information_of(const DataModel& model, std::span<const double> x,
                            std::span<const double> jacobian) {
   const std::size_t n = model.size();
   Information information;
-  for (const Unknown& u : model.data().unknowns) information.spread.push_back(spread_of(u));
+  for (const Unknown& u : model.data().unknowns) information.spread.push_back(width_of(u));
   std::size_t rows = jacobian.size() / n;
   for (const Unknown& u : model.data().unknowns) rows -= u.prior.has_value();  // no data
   Matrix a(static_cast<Index>(rows), static_cast<Index>(n));

@@ -238,7 +238,7 @@ std::optional<hydraulics::Neighbours> neighbours(const Variable& variable, const
 }
 
 // Samples of a case with its pressure, and how that changes with some variables.
-struct Turn {
+struct TurnWithRates {
   Case the_case;
   Samples samples;
   std::vector<hydraulics::PressureRates> fine, coarse;  // of hydraulic pressure
@@ -254,10 +254,10 @@ struct Wanted {
 };
 
 // Takes from `variables` those that the hydraulic pressure has no derivatives by.
-Turn turn_of(const study::PreparedCase& ready, const Case& base, const std::vector<Variable>& all,
-             const Wanted& wanted, std::vector<std::size_t>& variables,
-             const study::PartProgress& progress_of) {
-  Turn turn{ready.the_case, ready.samples(study::Way::driven), {}, {}, {}, {}, {}};
+TurnWithRates turn_of(const study::PreparedCase& ready, const Case& base,
+                      const std::vector<Variable>& all, const Wanted& wanted,
+                      std::vector<std::size_t>& variables, const study::PartProgress& progress_of) {
+  TurnWithRates turn{ready.the_case, ready.samples(study::Way::driven), {}, {}, {}, {}, {}};
   if (!ready.hydraulics) return turn;
   std::vector<hydraulics::Neighbours> parameters;
   std::vector<std::size_t> kept;
@@ -387,7 +387,7 @@ class TurnDerivatives {
  private:
   const Case& base_;
   std::vector<std::size_t> variables_;
-  Turn turn_;
+  TurnWithRates turn_;
   bool hydraulic_;
   std::vector<Rates> rates_;
 };

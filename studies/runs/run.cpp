@@ -7,9 +7,7 @@
 
 #include "bentaxis/analytic/body_loads.h"
 #include "bentaxis/analytic/budget.h"
-#include "bentaxis/analytic/constant_speed.h"
 #include "bentaxis/analytic/model.h"
-#include "bentaxis/analytic/teeth.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
@@ -94,38 +92,6 @@ Samples PreparedCase::samples(Way way) const {
 
 const Assumptions& PreparedCase::assumptions(Model model) const {
   return model == Model::analytic ? the_case.analytic : the_case.multibody;
-}
-
-namespace {
-
-// Refuses teeth that do not mesh, with the case that has them.
-void require_mesh(const Case& the_case) {
-  if (the_case.pump.gear.contact != ToothContact::teeth) return;
-  try {
-    const analytic::BevelTeeth teeth(the_case.pump);
-  } catch (const InputError& error) {
-    if (the_case.file.empty()) throw;
-    throw InputError(the_case.file.string() + ": " + error.what());
-  }
-}
-
-}  // namespace
-
-PreparedCase prepare(Case the_case, const PartProgress& progress_of) {
-  require_mesh(the_case);
-  if (the_case.pressure.kind == PressureKind::hydraulic) require_constant_speed(the_case);
-  return prepare_start(std::move(the_case), progress_of);
-}
-
-PreparedCase prepare_start(Case the_case, const PartProgress& progress_of) {
-  require_mesh(the_case);
-  std::optional<hydraulics::SteadyState> state;
-  if (the_case.pressure.kind == PressureKind::hydraulic) {
-    state = hydraulics::steady_state(the_case, {}, progress_of("hydraulics"));
-    hydraulics::give_to(the_case, *state);
-  }
-  PressureTrace pressure(the_case.pressure);
-  return {std::move(the_case), std::move(state), std::move(pressure)};
 }
 
 ModelRun run(const PreparedCase& ready, const RunOptions& options,
