@@ -36,7 +36,7 @@ class Loops : public testing::TestWithParam<int> {
 };
 
 TEST_P(Loops, VectorsAreThoseOfTheLibrary) {
-  const double factors[] = {1, -1, 0.3, -0.3, 7.1};
+  const double factors[] = {1, -1, 2, 0.3, -0.3, 7.1};
   std::vector<double> result[2];
   for (const bool ours : {false, true}) {
     const auto keep = [&](N_Vector v) {
