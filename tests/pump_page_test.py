@@ -24,6 +24,10 @@ import unittest
 
 SKIPPED = 77
 TOLERANCE = 1e-12   # of the peak of a reaction
+OIL_TOLERANCE = 1e-8  # likewise where the oil is solved
+# The steps of its integration follow from round-off: a change of the speed by 2 ulp changes reactions of the program by up to 9e-8. Held
+# to so many times that change where it is more.
+OF_ROUND_OFF = 3
 # Hard cases in which the program itself is further than that from the curve of 50 digits (bentaxis hardcases): there another
 # sine or cosine, right to the last digit but one, is amplified as much as the program's own round-off. Held to so many times that distance.
 AMPLIFIED = 10
@@ -63,12 +67,12 @@ def numbers(text):
 
 
 def stored_cases():
-    """Every stored case whose pressure is given, with the files that it names."""
+    """Every stored case of a turn at constant speed, with the files that it names."""
     found = []
     for file in sorted([*REPO.glob("cases/*.toml"), *REPO.glob("reference_data/*/*/case.toml")]):
         read = tomllib.loads(file.read_text())
-        if read.get("pressure", {}).get("kind") == "hydraulic":
-            continue
+        if has_oil(read) and read.get("transfer", {}).get("kind") == "pistons":
+            continue  # in time only; see test_oil_in_time_is_refused
         names = {value for table in read.values() if isinstance(table, dict) for value in table.values()
                  if isinstance(value, str) and value.endswith(".csv")}
         files = {name: (file.parent / name).read_text() for name in names if (file.parent / name).exists()}
@@ -76,15 +80,26 @@ def stored_cases():
     return found
 
 
-def native_table(file, folder):
-    subprocess.run([PROGRAM, "run", str(file), "--model", "analytic", "--out", str(folder)], check=True, capture_output=True)
+def has_oil(read):
+    return read.get("pressure", {}).get("kind") == "hydraulic"
+
+
+def native_table(file, folder, *options):
+    subprocess.run([PROGRAM, "run", str(file), "--model", "analytic", "--out", str(folder), *options], check=True, capture_output=True)
     with open(folder / "analytic.csv", newline="") as text:
         lines = list(csv.reader(text))
     return lines[0], lines[1:]
 
 
 def tolerance_of(file, header, rows, found):
-    """Of a case that is stored with its curve of 50 digits at the same angles: see AMPLIFIED."""
+    """See OIL_TOLERANCE and, of a case that is stored with its curve of 50 digits at the same angles, AMPLIFIED."""
+    read = tomllib.loads(file.read_text())
+    if has_oil(read):
+        speed = float(read["operation"]["speed_rpm"])
+        beside = math.nextafter(math.nextafter(speed, math.inf), math.inf)
+        with tempfile.TemporaryDirectory(prefix="bentaxis_test_") as folder:
+            moved = native_table(file, pathlib.Path(folder) / "run", "--set", f"operation.speed_rpm={beside!r}")
+        return max(OIL_TOLERANCE, OF_ROUND_OFF * worst(*moved, as_found(header, rows, found))[0])
     stored = file.parent / "reference.csv"
     if file.parent.parent.name != "hard" or not stored.exists():
         return TOLERANCE
@@ -92,10 +107,14 @@ def tolerance_of(file, header, rows, found):
         exact = list(csv.reader(text))
     if [float(row[0]) for row in exact[1:]] != [float(row[0]) for row in rows]:
         return TOLERANCE
+    return max(TOLERANCE, AMPLIFIED * worst(exact[0], exact[1:], as_found(header, rows, found))[0])
+
+
+def as_found(header, rows, found):
+    """The program's table as the page gives its own."""
     channels = [channel["name"] for channel in found["channels"]]
     values = [float(row[header.index(name)]) if name in header and row[header.index(name)] else math.nan for row in rows for name in channels]
-    native = {**found, "values": base64.b64encode(struct.pack(f"<{len(values)}d", *values)).decode()}
-    return max(TOLERANCE, AMPLIFIED * worst(exact[0], exact[1:], native)[0])
+    return {**found, "values": base64.b64encode(struct.pack(f"<{len(values)}d", *values)).decode()}
 
 
 def worst(header, rows, found):
@@ -134,8 +153,10 @@ class DigitsTest(unittest.TestCase):
         cls.found = json.loads(done.stdout)
 
     def test_numbers_are_those_of_the_program(self):
-        """Over every column of every stored case with given pressure, at the angles of the case."""
-        self.assertGreater(len(self.cases), 50)
+        """Over every column of every stored case, at the angles of the case."""
+        oil = [file for file, _ in self.cases if has_oil(tomllib.loads(file.read_text()))]
+        self.assertGreater(len(self.cases) - len(oil), 50)
+        self.assertGreater(len(oil), 5)
         amplified = 0
         with tempfile.TemporaryDirectory(prefix="bentaxis_test_") as folder:
             for (file, _), found in zip(self.cases, self.found):
@@ -144,10 +165,10 @@ class DigitsTest(unittest.TestCase):
                     header, rows = native_table(file, pathlib.Path(folder) / file.parent.name / file.stem)
                     self.assertEqual(found["rows"], len(rows))
                     largest, where = worst(header, rows, found)
-                    if os.environ.get("BENTAXIS_PRINT"):
-                        print(f"{largest:.1e} {where} {file.relative_to(REPO)}")
                     allowed = tolerance_of(file, header, rows, found)
-                    amplified += largest > TOLERANCE
+                    if os.environ.get("BENTAXIS_PRINT"):
+                        print(f"{largest:.1e} of {allowed:.1e} {where} {file.relative_to(REPO)}")
+                    amplified += largest > TOLERANCE and file not in oil
                     self.assertLessEqual(largest, allowed, where)
         self.assertLessEqual(amplified, 3)
 
@@ -318,11 +339,41 @@ class PageTest(unittest.TestCase):
         self.assertEqual(self.text("#troubles"), "")
         self.assertEqual(self.evaluate("bentaxisPump.design().file"), "case.toml")
 
-    def test_the_oil_is_left_to_the_program(self):
+    def test_the_oil_is_solved(self):
         self.open()
+        self.assertIn("no oil is solved", self.text("#oil"))
         self.drop(("a.toml", (REPO / "cases/bap63_rated_hydraulic.toml").read_text()))
-        self.assertIn("does not solve the oil", self.text("#troubles"))
+        self.assertEqual(self.text("#troubles"), "")
+        with tempfile.TemporaryDirectory(prefix="bentaxis_test_") as folder:
+            subprocess.run([PROGRAM, "show", str(REPO / "cases/bap63_rated_hydraulic.toml"), "--out", folder], check=True, capture_output=True)
+            native = json.loads((pathlib.Path(folder) / "report.json").read_text())
+        said = {row["quantity"]: row["values"][0] for row in self.evaluate("bentaxisPump.ask('document')")["report"]["key_figures"]["rows"]}
+        oil = {row["quantity"]: row["values"][0] for row in native["key_figures"]["rows"]}
+        for quantity in ("flow to the load, mean", "volumetric efficiency", "chamber pressure, maximum"):
+            self.assertAlmostEqual(said[quantity] / oil[quantity], 1, delta=1e-7, msg=quantity)
+        self.evaluate("document.querySelector('#figure-hydraulic_pressure').scrollIntoView()")
+        self.assertTrue(self.browser.wait_for("!!document.querySelector('#oil #figure-hydraulic_pressure canvas')", 5))
+        before = said["flow to the load, mean"]
+        self.change("hydraulics.delivery_volume_l", 0.4)
+        self.change("operation.speed_rpm", 1000)
+        after = {row["quantity"]: row["values"][0] for row in self.evaluate("bentaxisPump.ask('document')")["report"]["key_figures"]["rows"]}
+        self.assertLess(after["flow to the load, mean"], 0.7 * before)
+        self.save("oil")
+
+    def test_oil_in_time_is_refused(self):
+        self.open()
+        self.drop(("a.toml", (REPO / "cases/bap63_tapered_pistons_oil.toml").read_text()))
+        self.assertIn("bentaxis simulate follows the oil in time", self.text("#troubles"))
         self.assertEqual(self.evaluate("bentaxisPump.design().file"), "bap63_rated.toml")  # what was shown stays
+
+    def test_a_long_computation_is_said_to_be_under_way(self):
+        self.open()
+        self.assertEqual(self.text("#under-way"), "")
+        self.evaluate("(() => { const w = bentaxisPump.worker(), post = w.postMessage.bind(w); w.postMessage = m => setTimeout(() => post(m), 1500); })()")
+        self.evaluate("void bentaxisPump.change('pump.tilt_deg', 35)")
+        self.assertTrue(self.browser.wait_for("document.querySelector('#under-way').textContent.startsWith('Computing')", 5))
+        self.evaluate("bentaxisPump.settled()")
+        self.assertEqual(self.text("#under-way"), "")
 
     def test_it_says_what_it_does_not_do(self):
         self.open()

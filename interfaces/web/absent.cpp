@@ -1,11 +1,11 @@
 // What the page does not have, in place of the program's sources: a log of the files that were read
 // (it writes no report that names them), workbooks and MATLAB files (whose libraries are not here),
-// and the oil.
-#include <stdexcept>
+// and threads.
+#include <functional>
 #include <string>
 
 #include "bentaxis/files/input_log.h"
-#include "bentaxis/hydraulics/steady_state.h"
+#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "foreign_grid.h"
 
@@ -29,7 +29,9 @@ ForeignTable read_matlab(const std::filesystem::path& file, const std::string&,
 
 }  // namespace foreign
 
-// Of a solution of the oil, which there is never here.
-double hydraulics::density(const SteadyState&, double) { throw std::logic_error("no oil"); }
+// Jobs side by side: one after the other here.
+void numerics::parallel_for(int, std::size_t count, const std::function<void(std::size_t)>& job) {
+  for (std::size_t i = 0; i < count; ++i) job(i);
+}
 
 }  // namespace bentaxis

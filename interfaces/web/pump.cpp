@@ -26,12 +26,14 @@
 #include "bentaxis/results/samples.h"
 #include "bentaxis/study/budget_section.h"
 #include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/efficiency.h"
 #include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/transfer_summary.h"
 #include "bentaxis/study/turn_summary.h"
 #include "comparison_figures.h"
 #include "document_parts.h"
+#include "hydraulic_sections.h"
 #include "key_figures.h"
 
 namespace {
@@ -87,17 +89,12 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 Design computed(Case the_case, const char* name) {
   const Operation& operation = the_case.operation;
-  if (the_case.pressure.kind == PressureKind::hydraulic)
-    throw InputError(
-        "[pressure] kind = \"hydraulic\": this page does not solve the oil. Choose ideal here, or "
-        "run the program: bentaxis show CASE --out out");
   if (operation.samples_per_revolution > kMaxSamples)
     throw InputError(
         "[operation] samples_per_revolution = " + std::to_string(operation.samples_per_revolution) +
         ": this page computes at most " + std::to_string(kMaxSamples) +
         "; lower it, or use the program: bentaxis run");
-  PressureTrace pressure(the_case.pressure);
-  Design made{{std::move(the_case), std::nullopt, std::move(pressure)}, {}, {}};
+  Design made{study::prepare(std::move(the_case)), {}, {}};
   const Case& ready = made.ready.the_case;
   made.samples = sample_case(ready, made.ready.pressure);
   made.table = analytic::run(ready, ready.analytic, made.samples);
@@ -171,7 +168,18 @@ void put_beside(std::vector<report::KeyFigures::Row>& rows,
 std::vector<report::KeyFigures::Row> key_rows(const Design& one) {
   auto rows = study::turn_figures({&one.table});
   report::append(rows, study::transfer_figures({&one.table}, one.ready.the_case.pump));
+  if (one.ready.hydraulics)
+    report::append(rows, study::oil_figures(one.ready.hydraulics->summary, 1));
   return rows;
+}
+
+// The oil: its operating point, and the figures of a report but for the curve given to both models.
+void add_oil(report::Document& document, const Case& the_case,
+             const hydraulics::SteadyState& state) {
+  document.runs = std::vector{study::hydraulic_section(the_case, state)};
+  std::vector<report::Figure> figures = study::hydraulic_figures(the_case, state);
+  std::erase_if(figures, [](const report::Figure& figure) { return figure.id == "spline"; });
+  report::append(document.figures, std::move(figures));
 }
 
 report::Document document_of(const Design& one, const Design* kept) {
@@ -195,14 +203,17 @@ report::Document document_of(const Design& one, const Design* kept) {
   for (const ResultTable* table : tables) document.key_figures->models.push_back(table->name);
   if (kept != nullptr) put_beside(document.key_figures->rows, key_rows(*kept));
   document.figures = study::channel_figures(tables);
+  if (one.ready.hydraulics) add_oil(document, the_case, *one.ready.hydraulics);
 
   std::vector<ResultTable> budgets;
   for (const Design* each : {&one, kept})
     if (each != nullptr)
       budgets.push_back(
           analytic::run_budget(each->ready.the_case, each->ready.the_case.analytic, each->samples));
-  std::vector<study::BudgetTurn> turns = {{one.ready, budgets[0], one.table, {}}};
-  if (kept != nullptr) turns.push_back({kept->ready, budgets[1], kept->table, {}});
+  std::vector<study::BudgetTurn> turns = {
+      {one.ready, budgets[0], one.table, study::pump_power(one.ready)}};
+  if (kept != nullptr)
+    turns.push_back({kept->ready, budgets[1], kept->table, study::pump_power(kept->ready)});
   document.budget = study::budget_section(turns);
   return document;
 }

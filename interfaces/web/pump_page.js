@@ -146,6 +146,7 @@ async function dropKept() {
 
 // While a control moves, words and the pump in space follow four times a second.
 const WORDS_EVERY = 250, AT_REST = 120;  // ms
+const SAID_AFTER = 400;  // ms: a computation that takes longer, as that of the oil may, is said to be under way
 let busy = false, again = false, opening = false, waiters = [], updates = 0, documents = 0, lastDocument = 0, lastChange = 0;
 let shown = null, keptTurn = null;  // the last turns: {angles, columns}
 
@@ -164,6 +165,11 @@ async function tableOf({ angles, values, rows, columns }, which) {
   return { angles: [...angles], channels: known, columns: made };
 }
 
+function underWay(is) {
+  byId("main").classList.toggle("under-way", is);
+  byId("under-way").textContent = is ? "Computing. The results below are those of the values before." : "";
+}
+
 // Resolves when the page shows what the design now is.
 function update() {
   const settled = new Promise(done => waiters.push(done));
@@ -178,7 +184,8 @@ async function keepInStep() {
   try {
     while (again) {
       again = false;
-      const found = await ask("compute", { which: 0, ...given(design) });
+      const late = setTimeout(() => underWay(true), SAID_AFTER);
+      const found = await ask("compute", { which: 0, ...given(design) }).finally(() => { clearTimeout(late); underWay(false); });
       if (found.error) {
         refuse(found);
         if (!controls.size) await showParameters();
@@ -405,7 +412,7 @@ function liveFigure(figure, data) {
 let sections = new Map();
 const SHOWN = [
   ["now", "Results", nowSection], ["curves", "Curves", curvesSection], ["space", "The pump in three dimensions", spaceSection],
-  ["key", "Key figures", r => keyFigures(r)], ["changed", "What changed", changedSection],
+  ["key", "Key figures", r => keyFigures(r)], ["oil", "Oil", oilSection], ["changed", "What changed", changedSection],
   ["budget", "Torque and power", r => budget(r)], ["validity", "Validity over the turn", r => validity(r)],
   ["derived", "Derived quantities", r => derived(r)], ["limits", "What this page does not do", limitsSection],
 ];
@@ -450,6 +457,17 @@ function spaceSection(r, { scene, picture }) {
   return node;
 }
 
+function oilSection(r) {
+  if (!list(r.runs).length) return el("p.quiet", {}, "The chamber pressures are given: no oil is solved. Parameter ",
+    el("code", {}, "pressure.kind"), " = hydraulic of a case with [hydraulics] solves it.");
+  const mounts = [];
+  const node = el("div", {}, runs(r), r.figures.filter(f => f.kind === "own_axis").map(f => el("figure", { id: "figure-" + f.id },
+    el("figcaption", {}, el("h3", {}, f.title)), el("div.screen", {}, curvesFigure(f, { ...curveData(), mounts })),
+    f.note ? el("p.note", {}, f.note) : null)));
+  requestAnimationFrame(() => mounts.forEach(mount => mount()));
+  return node;
+}
+
 const valueText = (p, value) => (p.type === "number" ? unit(number(value, 6), p.unit) : Array.isArray(value) ? value.map(v => number(v, 6)).join(", ") : String(value));
 
 function changedSection(r) {
@@ -478,7 +496,7 @@ function limitsSection() {
   el("ul", {},
     el("li", {}, "It computes by one model, the closed form (analytic). The second model, built of bodies and joints with Simbody, is not in the page, "
       + "so nothing is compared. Save the case, then run both models: ", el("code", {}, `${COMMAND} ${design.file}`)),
-    el("li", {}, "It does not solve the oil: chamber pressures are ideal or from a curve. With the hydraulic model: ", el("code", {}, `bentaxis show ${design.file} --out out`)),
+    el("li", {}, "Of the oil it shows the periodic state of one turn. Torque over pressure, power by place and orders: ", el("code", {}, `bentaxis pressure ${design.file} --out out`)),
     el("li", {}, "It shows one turn at constant speed. Motion in time: ", el("code", {}, `bentaxis simulate ${design.file}`)),
     el("li", {}, "Sweeps, sensitivities, bearing life and FMUs are in the program only: ", el("code", {}, "bentaxis --help"))),
   el("p", {}, "The numbers are those of the program: the same source, compiled for the browser."));
