@@ -14,6 +14,7 @@
 #include "embedded.h"
 #include "platforms.h"
 #include "runtime/plant.h"
+#include "terminals.h"
 
 namespace bentaxis::fmu {
 namespace {
@@ -138,6 +139,9 @@ std::string unit_archive(const Case& the_case, const UnitOptions& options) {
   description.token = token_of(identity(kept, choice, description.variables));
   std::vector<ArchiveFile> files;
   files.push_back({"modelDescription.xml", description_xml(options.version, description)});
+  if (options.version == Version::fmi3)
+    if (std::string terminals = terminals_fmi3(description.variables); !terminals.empty())
+      files.push_back({"terminalsAndIcons/terminalsAndIcons.xml", std::move(terminals)});
   for (const PlatformLibrary& library : libraries)
     files.push_back({library.place, library.bytes, true});
   files.push_back({"resources/case.toml", kept.text});
