@@ -13,7 +13,6 @@ class PrescribedOil : public Oil {
       : pistons_(pistons),
         pressure_(pressure),
         ports_(ports),
-        now_(ports),
         edges_deg_(block_edges_deg(pressure, pistons)) {}
 
   int pistons() const override { return pistons_; }
@@ -24,10 +23,7 @@ class PrescribedOil : public Oil {
     takes.suction = takes.delivery = pressure_.ideal_share(0).has_value();
     return takes;
   }
-  void surround(const Surroundings& outside) override {
-    now_ = {outside.suction.value_or(ports_.suction), outside.delivery.value_or(ports_.delivery)};
-    moved_ = outside.suction || outside.delivery;
-  }
+  void surround(const Surroundings& outside) override { outside_ = outside; }
   std::vector<double> start() const override { return {}; }
   std::vector<double> scales() const override { return {}; }
   std::vector<double> edges_deg() const override { return edges_deg_; }
@@ -39,16 +35,19 @@ class PrescribedOil : public Oil {
   }
   void jacobian(double, const AxisMotion&, const AxisMotion&, const double*,
                 double*) const override {}
-  void loads(double, const AxisMotion& block, const double*, OilLoads& loads) const override {
+  void loads(double time, const AxisMotion& block, const double*, OilLoads& loads) const override {
+    const auto suction = outside_.suction_at(time), delivery = outside_.delivery_at(time);
+    const bool from_outside = suction || delivery;
+    const PortPressures now{suction.value_or(ports_.suction), delivery.value_or(ports_.delivery)};
     loads.chamber_pressure.resize(static_cast<std::size_t>(pistons_));
     const double degrees = block.angle / kRadPerDegree;
     for (int k = 0; k < pistons_; ++k) {
       const double angle = piston_angle_deg(degrees, k + 1, pistons_);
       loads.chamber_pressure[k] =
-          moved_ ? now_.suction + (now_.delivery - now_.suction) * *pressure_.ideal_share(angle)
-                 : pressure_(angle);
+          from_outside ? now.suction + (now.delivery - now.suction) * *pressure_.ideal_share(angle)
+                       : pressure_(angle);
     }
-    loads.ports = now_;
+    loads.ports = now;
   }
 
   std::vector<OilPlace> places() const override { return {}; }
@@ -66,8 +65,8 @@ class PrescribedOil : public Oil {
  private:
   int pistons_;
   const PressureTrace& pressure_;
-  PortPressures ports_, now_;
-  bool moved_ = false;  // the ports' pressures come from outside
+  PortPressures ports_;
+  Surroundings outside_;
   std::vector<double> edges_deg_;
 };
 

@@ -54,9 +54,8 @@ class OilInTime : public Oil {
     return takes;
   }
   void surround(const Surroundings& outside) override {
-    network_.set_suction(outside.suction);
-    if (network_.fixed_end()) network_.set_delivery(outside.delivery);
-    outside_share_ = outside.load_share;
+    outside_ = outside;
+    hold(outside.time);
   }
   std::vector<double> start() const override { return start_; }
   std::vector<OilColumn> state_columns() const override { return network_.state_columns(); }
@@ -86,15 +85,18 @@ class OilInTime : public Oil {
 
   bool rates(double time, const AxisMotion& shaft, const AxisMotion& block, const double* y,
              double* dy) const override {
+    follow(time);
     return network_.rates(Network::at(shaft, block), y, load_size(time), dy);
   }
 
   void jacobian(double time, const AxisMotion& shaft, const AxisMotion& block, const double* y,
                 double* by_state) const override {
+    follow(time);
     network_.jacobian(Network::at(shaft, block), y, load_size(time), by_state, nullptr);
   }
 
-  void loads(double, const AxisMotion&, const double* y, OilLoads& loads) const override {
+  void loads(double time, const AxisMotion&, const double* y, OilLoads& loads) const override {
+    follow(time);
     loads.chamber_pressure.resize(pistons());
     for (int k = 0; k < pistons(); ++k) loads.chamber_pressure[k] = network_.fluid().gauge(y[k]);
     loads.ports = {network_.suction_gauge(y), network_.delivery_gauge(y)};
@@ -109,6 +111,7 @@ class OilInTime : public Oil {
 
   void powers(double time, const AxisMotion& shaft, const AxisMotion& block, const double* y,
               double* power, double& mass_in, double& mass_out) const override {
+    follow(time);
     const Network::Moment now = Network::at(shaft, block);
     Network::Flows flows;
     network_.flows(now, y, load_size(time), flows);
@@ -118,8 +121,9 @@ class OilInTime : public Oil {
     mass_out = (network_.has_loop() ? 0 : flows.load) + sum_over_chambers(flows.leakage);
   }
 
-  void stored(double, const AxisMotion& shaft, const AxisMotion& block, const double* y,
+  void stored(double time, const AxisMotion& shaft, const AxisMotion& block, const double* y,
               double& energy, double& mass) const override {
+    follow(time);
     const Network::Stored all = network_.stored(Network::at(shaft, block), y);
     energy = all.energy;
     mass = all.mass;
@@ -137,6 +141,7 @@ class OilInTime : public Oil {
 
   void row(double time, const AxisMotion& shaft, const AxisMotion& block, const double* y,
            double* values) const override {
+    follow(time);
     Network::Flows flows;
     network_.flows(Network::at(shaft, block), y, load_size(time), flows);
     for (const Column& column : columns_) *values++ = column.value(y, flows);
@@ -154,8 +159,19 @@ class OilInTime : public Oil {
     return TimeSignal(load->share);
   }
 
+  // The pressures outside, as they are at a time.
+  void hold(double time) const {
+    network_.set_suction(outside_.suction_at(time));
+    if (network_.fixed_end()) network_.set_delivery(outside_.delivery_at(time));
+  }
+  // Where they change with time; where they do not they are held already.
+  void follow(double time) const {
+    if (!outside_.is_constant()) hold(time);
+  }
+
   double load_size(double time) const {
-    if (outside_share_) return network_.load().shared(load_size_, *outside_share_);
+    if (const auto share = outside_.load_share_at(time))
+      return network_.load().shared(load_size_, *share);
     return share_ ? network_.load().shared(load_size_, share_->value(time)) : load_size_;
   }
 
@@ -224,11 +240,11 @@ class OilInTime : public Oil {
     return network_.at_rest(chambers, delivery);
   }
 
-  Network network_;
-  double density_;  // of all volume flows
+  mutable Network network_;  // which holds the pressures outside at the time that was asked last
+  double density_;           // of all volume flows
   double load_size_;
   std::optional<TimeSignal> share_;  // of that
-  std::optional<double> outside_share_;
+  Surroundings outside_;
   std::vector<double> start_;
   std::vector<Column> columns_ = all_columns();
 };

@@ -115,6 +115,32 @@ class Description:
         return next(v for v in self.variables if (v.place if self.version == 2 else v.reference) == number)
 
 
+TERMINALS = "terminalsAndIcons/terminalsAndIcons.xml"
+
+
+def wrong_in_terminals(text, description):
+    """What is wrong, and {terminal: {member: (variable, kind)}}."""
+    root, wrong, found = xml.fromstring(text), [], {}
+    by_name = {variable.name: variable for variable in description.variables}
+    if root.tag != "fmiTerminalsAndIcons" or root.get("fmiVersion") != "3.0" or [node.tag for node in root] != ["Terminals"]:
+        wrong.append("root")
+    for terminal in root.findall("Terminals/Terminal"):
+        members = {}
+        if terminal.get("name") in found or terminal.get("matchingRule") not in ("plug", "bus", "sequence"):
+            wrong.append(f"terminal {terminal.attrib}")
+        for member in terminal:
+            if member.tag != "TerminalMemberVariable" or member.get("variableKind") not in ("signal", "inflow", "outflow"):
+                wrong.append(f"member {member.tag} {member.attrib}")
+            if member.get("variableName") not in by_name or member.get("memberName") in members:
+                wrong.append(f"name {member.attrib}")
+            members[member.get("memberName")] = (member.get("variableName"), member.get("variableKind"))
+        causalities = sorted(by_name[name].causality for name, _ in members.values() if name in by_name)
+        if causalities != ["input", "output"]:
+            wrong.append(f"causalities {causalities}")
+        found[terminal.get("name")] = members
+    return wrong, found
+
+
 def of_every_unit(test):
     """A test of one description, as a test of all."""
     def of_all(self):
@@ -453,6 +479,42 @@ class Archives(unittest.TestCase):
                 self.assertIn("Td_z1_Nm", page)
                 for name in names:
                     self.assertFalse(name.startswith("/") or ".." in name or "\\" in name, name)
+
+    def test_terminals_are_connections(self):
+        """FMI 3.0, 2.4.9: names, kinds, members; of two members one is given and one answers."""
+        wanted = {("bap63_rated_hydraulic", "speed", 3): {"shaft", "suction"}, ("bap63_rated", None, 3): {"shaft"}, ("bap63_start_up", "case", 3): {"suction"}}
+        for key, file in self.files.items():
+            with self.subTest(key=key), zipfile.ZipFile(file) as archive:
+                names = archive.namelist()
+                if key[2] == 2 or TERMINALS not in names:
+                    self.assertNotIn(TERMINALS, names)
+                    self.assertNotIn(key, wanted)
+                    continue
+                said, found = wrong_in_terminals(archive.read(TERMINALS), self.descriptions[key])
+                self.assertEqual(said, [])
+                if key in wanted:
+                    self.assertEqual(set(found), wanted[key])
+
+    def test_the_delivery_side_is_a_terminal_where_its_pressure_is_given(self):
+        for units, flow in (("case", "flow_delivery_l_per_min"), ("si", "flow_delivery_m3_per_s")):
+            file = self.folder / f"held-{units}.fmu"
+            result = run("fmu", REPO / "cases/bap63_rated_hydraulic.toml", "--fmi", 3, "--drive", "torque", "--set", "load.kind=constant_pressure",
+                         "--out", file, *LINUX, *(["--output-units", "si"] if units == "si" else []))
+            self.assertEqual(result.returncode, 0, result.stderr)
+            with zipfile.ZipFile(file) as archive:
+                said, found = wrong_in_terminals(archive.read(TERMINALS), Description(archive.read("modelDescription.xml")))
+            self.assertEqual(said, [])
+            self.assertEqual(found["delivery"], {"p": ("delivery_pressure", "signal"), "q": (flow, "outflow")})
+            self.assertEqual(found["shaft"]["tau"], ("drive_torque", "inflow"))
+
+    def test_wrong_terminals_are_found(self):
+        key = ("bap63_rated_hydraulic", "speed", 3)
+        with zipfile.ZipFile(self.files[key]) as archive:
+            good = archive.read(TERMINALS).decode()
+        for was, wrong in (("drive_speed", "drive_sped"), ('name="suction"', 'name="shaft"'), ('"inflow"', '"in"'), ('memberName="q"', 'memberName="p"'),
+                           ("suction_pressure", "p_suction_bar"), ('matchingRule="plug"', "")):
+            self.assertNotEqual(good, good.replace(was, wrong), was)
+            self.assertNotEqual(wrong_in_terminals(good.replace(was, wrong), self.descriptions[key])[0], [], wrong)
 
     def test_curves_are_in_the_archive_and_named_from_the_case(self):
         with zipfile.ZipFile(self.files["bap63_start_up", "case", 3]) as archive:

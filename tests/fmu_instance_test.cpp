@@ -8,6 +8,7 @@
 
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
 #include "fmu_support.h"
 
 namespace bentaxis::fmu {
@@ -389,6 +390,44 @@ TEST(Fmi2, PressuresBelowVacuumAreRefused) {
         EXPECT_EQ(unit.set(input, -0.5e5), fmi2OK) << name << unit.messages.text;
       }
     }
+  }
+}
+
+TEST(Fmi2, InputsAreInterpolatedLinearly) {
+  const Resources resources(kHydraulic);
+  const Functions& f = library();
+  Unit2 unit(resources);
+  unit.start();
+  const auto slope = [&](const char* name, int order, double value) {
+    const unsigned reference = resources[name];
+    return f.fmi2SetRealInputDerivatives(unit.it, &reference, 1, &order, &value);
+  };
+  EXPECT_EQ(slope("load_share", 1, -32), fmi2OK) << unit.messages.text;
+  EXPECT_EQ(slope("drive_speed", 1, -100), fmi2OK);
+  EXPECT_EQ(unit.get("drive_acceleration"), -100);
+  EXPECT_EQ(slope("drive_acceleration", 1, 0), fmi2OK);
+  // A point further on, values go on; what is read is what acts.
+  ASSERT_EQ(f.fmi2DoStep(unit.it, 0, 0.015625, fmi2True), fmi2OK) << unit.messages.text;
+  EXPECT_NEAR(unit.get("load_share"), 0.5, 1e-12);
+  const double speed = unit.get("shaft_rpm");
+  EXPECT_NEAR(speed, 1500 - 0.015625 * 100 / kRadPerSecondPerRpm, 1e-9);
+  // Below its least value it is refused before anything moves.
+  unit.messages.text.clear();
+  EXPECT_EQ(f.fmi2DoStep(unit.it, 0.015625, 0.046875, fmi2True), fmi2Error);
+  EXPECT_TRUE(unit.messages.has("load_share would be -1 at the end of the step: must be >= 0"))
+      << unit.messages.text;
+  EXPECT_EQ(unit.get("shaft_rpm"), speed);
+  Unit2 other(resources);
+  other.start();
+  for (const auto& [name, order, value, said] :
+       {std::tuple{"load_share", 2, 1.0, "load_share: order 2 of a derivative"},
+        std::tuple{"pump.tilt_deg", 1, 1.0, "pump.tilt_deg is not a continuous input"},
+        std::tuple{"suction_pressure", 1, HUGE_VAL, "der(suction_pressure) must be a finite"},
+        std::tuple{"drive_acceleration", 1, 1.0, "the acceleration is held"}}) {
+    const unsigned reference = resources[name];
+    other.messages.text.clear();
+    EXPECT_EQ(f.fmi2SetRealInputDerivatives(other.it, &reference, 1, &order, &value), fmi2Error);
+    EXPECT_TRUE(other.messages.has(said)) << other.messages.text;
   }
 }
 

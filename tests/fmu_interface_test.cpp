@@ -229,7 +229,7 @@ std::vector<Order2> orders2(const Resources& r) {
        [&f](Unit2& u) { return f.fmi2GetStringStatus(u.it, fmi2PendingStatus, &text); }},
       {"GetIntegerStatus", simulation, "",
        [&f](Unit2& u) { return f.fmi2GetIntegerStatus(u.it, fmi2Terminated, &flag); }},
-      {"SetRealInputDerivatives", simulation, "", [&f, speed](Unit2& u) {
+      {"SetRealInputDerivatives", simulation, "nis", [&f, speed](Unit2& u) {
          const int order = 1;
          return f.fmi2SetRealInputDerivatives(u.it, &speed, 1, &order, x);
        }}};

@@ -268,6 +268,118 @@ TEST(Plant, SpeedWithAccelerationIsTheCurve) {
   EXPECT_LT(apart(found, wanted), 1e-6);
 }
 
+// Curves over time whose middle is straight: both ways to the same line share no code of inputs.
+// Written before the first run: 1e-6 of peak, as for the speed.
+TEST(Plant, InputsThatChangeLinearlyAreTheCurve) {
+  Case load = shipped("bap63_reversal", 0.01, 20);
+  load.drive->curve = {};
+  Case load_over_time = load;
+  load_over_time.hydraulics->load->share.time = {0, 0.01, 0.02, 0.03};
+  load_over_time.hydraulics->load->share.value = {1, 0.8, 0.6, 0.4};
+  Case torque_over_time = with_torque();
+  torque_over_time.drive->curve.time = {0, 0.01, 0.02, 0.03};
+  torque_over_time.drive->curve.value = {250, 200, 150, 100};
+  struct Line {
+    Case here, over_time;
+    Drive drive, of_truth;
+    double Inputs::*value;
+    double Inputs::*rate;
+    double start, slope;
+  };
+  const Line lines[] = {{load, load_over_time, Drive::speed, Drive::speed, &Inputs::load_share,
+                         &Inputs::load_share_rate, 1, -20},
+                        {with_torque(), torque_over_time, Drive::torque, Drive::as_in_case,
+                         &Inputs::torque, &Inputs::torque_rate, 250, -5000}};
+  for (const Line& line : lines) {
+    Plant truth(line.over_time, driven_by(line.of_truth), kSteps);
+    truth.start(truth.first_inputs(), 0.01);
+    const Values wanted = stepped(truth, 0.01, 20);
+    Plant plant(line.here, driven_by(line.drive), kSteps);
+    Inputs inputs = plant.first_inputs();
+    inputs.*line.value = line.start;
+    inputs.*line.rate = line.slope;
+    plant.start(inputs, 0.01);
+    // Said once it goes on; said anew where it is by then, it is the same.
+    Values found = stepped(plant, 0.005, 10);
+    fmu::advance(inputs, 0.005);
+    EXPECT_NEAR(inputs.*line.value, line.start + 0.005 * line.slope, 1e-12 * line.start);
+    plant.set_inputs(inputs);
+    const Values rest = stepped(plant, 0.005, 10);
+    found.insert(found.end(), rest.begin() + 1, rest.end());
+    EXPECT_LT(apart(found, wanted), 1e-6);
+    // Without the slope it is another motion.
+    Plant held(line.here, driven_by(line.drive), kSteps);
+    inputs.*line.value = line.start;
+    inputs.*line.rate = 0;
+    held.start(inputs, 0.01);
+    EXPECT_GT(apart(stepped(held, 0.01, 20), wanted), 1e-3);
+  }
+}
+
+// Of pressures there are no curves. Held in the middle of ever shorter pieces they come to the line
+// by the square of the pieces. Written before the first run: a factor of 3 to 5 for half of them.
+TEST(Plant, PressuresThatChangeLinearlyAreTheLimitOfSteps) {
+  Case held_pressure = rated();
+  held_pressure.hydraulics->load->kind = LoadKind::constant_pressure;
+  const Case ideal = shipped("bap63_rated", 0.01, 20);
+  for (const Case& c : {ideal, held_pressure}) {
+    const auto started = [&](double suction_rate, double delivery_rate) {
+      auto plant = std::make_unique<Plant>(c, driven_by(Drive::speed), kSteps);
+      Inputs inputs = plant->first_inputs();
+      inputs.suction_rate = suction_rate;
+      inputs.delivery_rate = delivery_rate;
+      plant->start(inputs, 0.01);
+      return plant;
+    };
+    constexpr double kSuction = 2e7, kDelivery = -5e8;  // Pa/s: 1 and -25 bar in 5 ms
+    const Values line = stepped(*started(kSuction, kDelivery), 0.005, 1);
+    const auto by_pieces = [&](int pieces) {
+      const auto plant = started(0, 0);
+      const Inputs first = plant->first_inputs();
+      const double piece = 0.005 / pieces;
+      Values values = {plant->outputs()};
+      for (int i = 0; i < pieces; ++i) {
+        Inputs middle = first;
+        middle.suction += kSuction * (i + 0.5) * piece;
+        middle.delivery += kDelivery * (i + 0.5) * piece;
+        plant->set_inputs(middle);
+        plant->step((i + 1) * piece);
+      }
+      Inputs last = first;
+      last.suction += kSuction * 0.005;
+      last.delivery += kDelivery * 0.005;
+      plant->set_inputs(last);
+      values.push_back(plant->outputs());
+      return values;
+    };
+    if (!c.hydraulics) {  // which has no memory: the end alone counts
+      EXPECT_LT(apart(by_pieces(1), line), 1e-12);
+      EXPECT_GT(apart({line[0], line[0]}, line), 1e-2);
+      continue;
+    }
+    // Of first order: the last half of a piece comes at once, and a chamber takes time to follow.
+    const double coarse = apart(by_pieces(16), line), fine = apart(by_pieces(32), line);
+    EXPECT_GT(coarse, 1e-5);
+    EXPECT_GT(coarse / fine, 1.8) << coarse << " " << fine;
+    EXPECT_LT(coarse / fine, 2.2) << coarse << " " << fine;
+  }
+}
+
+TEST(Plant, KeptStateGoesOnWithItsSlopes) {
+  Plant plant(rated(), driven_by(Drive::speed), kSteps);
+  Inputs inputs = plant.first_inputs();
+  inputs.load_share_rate = -20;
+  inputs.suction_rate = 1e7;
+  plant.start(inputs, 0.01);
+  stepped(plant, 0.003, 5);
+  const fmu::PlantState kept = plant.state();
+  const Values once = stepped(plant, 0.003, 5);
+  Plant other(rated(), driven_by(Drive::speed), kSteps);
+  other.start(other.first_inputs(), 0.01);
+  other.set_state(kept);
+  EXPECT_LT(apart(stepped(other, 0.003, 5), once), 1e-6);
+}
+
 TEST(Plant, KeptStateGoesOnInAnotherPlant) {
   for (const Drive drive : {Drive::speed, Drive::torque}) {
     const Case c = with_torque();

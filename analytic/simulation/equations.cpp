@@ -296,7 +296,7 @@ BevelTeeth::Approach Equations::approach_of_teeth(double time, const State& y, i
 
 // Of drives that give a torque.
 double Equations::drive_torque_at(double time, const State& y) const {
-  if (outside_.torque) return *outside_.torque;
+  if (const auto torque = outside_.torque_at(time)) return *torque;
   if (drive_.kind == DriveKind::torque) return curve_ ? curve_->value(time) : drive_.torque;
   return drive_.motor->coupling_stiffness * y[kTwist] +
          drive_.motor->coupling_damping * y[kTwistRate];

@@ -9,13 +9,45 @@ namespace bentaxis {
 
 bool operator==(const Surroundings& a, const Surroundings& b) {
   return a.shaft == b.shaft && a.time == b.time && a.torque == b.torque && a.suction == b.suction &&
-         a.delivery == b.delivery && a.load_share == b.load_share;
+         a.delivery == b.delivery && a.load_share == b.load_share &&
+         a.torque_rate == b.torque_rate && a.suction_rate == b.suction_rate &&
+         a.delivery_rate == b.delivery_rate && a.load_share_rate == b.load_share_rate;
 }
 
 AxisMotion Surroundings::shaft_at(double at) const {
   const double since = at - time;
   return {shaft->angle + (shaft->speed + shaft->acceleration / 2 * since) * since,
           shaft->speed + shaft->acceleration * since, shaft->acceleration};
+}
+
+namespace {
+
+// Where nothing changes the value itself, to the last bit.
+std::optional<double> along(const std::optional<double>& value, double rate, double since) {
+  if (!value || rate == 0) return value;
+  return *value + rate * since;
+}
+
+}  // namespace
+
+bool Surroundings::is_constant() const {
+  return suction_rate == 0 && delivery_rate == 0 && load_share_rate == 0;
+}
+
+std::optional<double> Surroundings::torque_at(double at) const {
+  return along(torque, torque_rate, at - time);
+}
+
+std::optional<double> Surroundings::suction_at(double at) const {
+  return along(suction, suction_rate, at - time);
+}
+
+std::optional<double> Surroundings::delivery_at(double at) const {
+  return along(delivery, delivery_rate, at - time);
+}
+
+std::optional<double> Surroundings::load_share_at(double at) const {
+  return along(load_share, load_share_rate, at - time);
 }
 
 void Mechanics::surround(const Surroundings& /*outside*/) {

@@ -23,7 +23,7 @@ void add_kinds(pugi::xml_node root) {
   pugi::xml_node simulation = root.append_child("CoSimulation");
   set_capabilities(simulation);
   set(simulation, "canHandleVariableCommunicationStepSize", true);
-  set(simulation, "canInterpolateInputs", false);
+  set(simulation, "canInterpolateInputs", true);
   simulation.append_attribute("maxOutputDerivativeOrder") = 0;
   set(simulation, "canRunAsynchronuously", false);  // the standard spells it so
 }

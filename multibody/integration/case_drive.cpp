@@ -61,7 +61,7 @@ DriveInTime CaseDrive::in_time() const {
   }
   drive.torque.emplace();
   drive.torque->torque = [this](double time) {
-    if (outside_.torque) return *outside_.torque;
+    if (const auto torque = outside_.torque_at(time)) return *torque;
     return curve_ ? curve_->value(time) : spec_.torque;
   };
   drive.torque->motor_torque = [this](double speed) { return motor_torque(speed); };

@@ -198,11 +198,11 @@ fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[], size_t co
 
 // Co-simulation.
 
-fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference /*vr*/[],
-                                       size_t count, const fmi2Integer /*order*/[],
-                                       const fmi2Real /*value*/[]) {
-  return call(c, __func__, Kind::co_simulation, kSet, [&](Instance& /*it*/) {
-    if (count > 0) throw Refused("inputs are not interpolated: canInterpolateInputs is false");
+fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t count,
+                                       const fmi2Integer order[], const fmi2Real value[]) {
+  return call(c, __func__, Kind::co_simulation, kSet, [&](Instance& it) {
+    require_places(count, {vr, order, value});
+    it.set_rates(vr, count, order, value);
   });
 }
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference /*vr*/[],

@@ -211,11 +211,14 @@ Status Instance::step(double time, double size) {
     throw Refused("the step ends at " + number_text(end) + " s, after the stop time " +
                   number_text(stop_time_) + " s");
   settle();
+  require_inputs_until(end);
   open_.reset();
   try {
     // A step below the resolution of time is none.
     if (end - start_time_ > plant_->time()) {
+      const double size_of_plant = end - start_time_ - plant_->time();
       plant_->step(end - start_time_);
+      advance(inputs_, size_of_plant);
       if (log_.tells_events())
         for (const Plant::Passed& event : plant_->passed())
           log_.event("event at " + number_text(start_time_ + event.time) + " s: " + event.what);

@@ -86,6 +86,10 @@ class Instance {
     for (std::size_t i = 0; i < count; ++i) values[i] = flag(references[i]);
   }
   void set_numbers(const Reference* references, std::size_t count, const double* values);
+  /// Derivatives of inputs over time, from the present time on: of order 1. That of the speed is
+  /// the acceleration.
+  void set_rates(const Reference* references, std::size_t count, const int* orders,
+                 const double* values);
   template <class Boolean>
   void set_flags(const Reference* references, std::size_t count, const Boolean* values) {
     for (std::size_t i = 0; i < count; ++i) require_settable_flag(references[i]);
@@ -140,6 +144,7 @@ class Instance {
   void set_flag(Reference reference, bool value);
   /// The least value of an input, as parameters are set; none where it has no bound.
   std::optional<double> least_of(const Variable& input) const;
+  void require_inputs_until(double end) const;
   double& input(Input which);
 
   /// The case with the parameters as they are set.

@@ -136,6 +136,46 @@ void Instance::set_flag(Reference /*reference*/, bool value) {
   inputs_changed_ = true;
 }
 
+void Instance::set_rates(const Reference* references, std::size_t count, const int* orders,
+                         const double* values) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Variable& it = variable(references[i]);
+    if (it.boolean || it.role != Role::input) throw Refused(it.name + " is not a continuous input");
+    if (orders[i] != 1)
+      throw Refused(it.name + ": order " + std::to_string(orders[i]) +
+                    " of a derivative: inputs are interpolated linearly, order 1");
+    if (!std::isfinite(values[i])) throw Refused("der(" + it.name + ") must be a finite number");
+    if (it.input == Input::acceleration && values[i] != 0)
+      throw Refused(
+          "der(drive_acceleration): the acceleration is held between communication points");
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const Input which = variables_[references[i]].input;
+    if (which == Input::acceleration) continue;
+    if (which == Input::speed) {
+      inputs_.acceleration = values[i];
+      inputs_.acceleration_given = true;
+    } else {
+      *rate_of(inputs_, which) = values[i];
+    }
+    inputs_changed_ = true;
+  }
+}
+
+// What changes linearly must not leave its range within a step.
+void Instance::require_inputs_until(double end) const {
+  Inputs then = inputs_;
+  advance(then, end - now_);
+  for (const Variable& it : variables_) {
+    if (it.role != Role::input || it.boolean || rate_of(then, it.input) == nullptr) continue;
+    const std::optional<double> least = least_of(it);
+    const double value = input_of(then, it.input);
+    if (least && value < *least)
+      throw Refused(it.name + " would be " + number_text(value) +
+                    " at the end of the step: must be >= " + number_text(*least));
+  }
+}
+
 void Instance::set_numbers(const Reference* references, std::size_t count, const double* values) {
   for (std::size_t i = 0; i < count; ++i) {
     const Variable& it = variable(references[i]);

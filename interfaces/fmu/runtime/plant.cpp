@@ -66,7 +66,33 @@ bool operator==(const Inputs& a, const Inputs& b) {
   return a.speed == b.speed && a.acceleration == b.acceleration && a.torque == b.torque &&
          a.suction == b.suction && a.delivery == b.delivery && a.load_share == b.load_share &&
          a.load_share_replaces_curve == b.load_share_replaces_curve &&
-         a.acceleration_given == b.acceleration_given;
+         a.acceleration_given == b.acceleration_given && a.torque_rate == b.torque_rate &&
+         a.suction_rate == b.suction_rate && a.delivery_rate == b.delivery_rate &&
+         a.load_share_rate == b.load_share_rate;
+}
+
+double* rate_of(Inputs& inputs, Input which) {
+  switch (which) {
+    case Input::torque:
+      return &inputs.torque_rate;
+    case Input::suction:
+      return &inputs.suction_rate;
+    case Input::delivery:
+      return &inputs.delivery_rate;
+    case Input::load_share:
+      return &inputs.load_share_rate;
+    case Input::speed:
+    case Input::acceleration:
+    case Input::load_share_replaces_curve:
+      break;
+  }
+  return nullptr;
+}
+
+void advance(Inputs& inputs, double seconds) {
+  for (const Input which : {Input::torque, Input::suction, Input::delivery, Input::load_share})
+    if (const double rate = *rate_of(inputs, which); rate != 0)
+      input_of(inputs, which) += rate * seconds;
 }
 
 class Plant::Implementation {
@@ -147,6 +173,7 @@ class Plant::Implementation {
 
   void step(double time) {
     stepper_->step_to(time);
+    advance(inputs_, time - time_);
     time_ = time;
     state_ = stepper_->state();
     fresh_ = false;
@@ -341,8 +368,13 @@ class Plant::Implementation {
     if (given.torque) now.torque = inputs_.torque;
     if (given.suction) now.suction = inputs_.suction;
     if (given.delivery) now.delivery = inputs_.delivery;
-    if (given.load_share && (inputs_.load_share_replaces_curve || inputs_.load_share != 1))
+    if (given.load_share && (inputs_.load_share_replaces_curve || inputs_.load_share != 1 ||
+                             inputs_.load_share_rate != 0))
       now.load_share = inputs_.load_share;
+    now.torque_rate = inputs_.torque_rate;
+    now.suction_rate = inputs_.suction_rate;
+    now.delivery_rate = inputs_.delivery_rate;
+    now.load_share_rate = inputs_.load_share_rate;
     return now;
   }
 

@@ -11,7 +11,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "bytes of states are little-endian");
 
-constexpr std::string_view kTag = "bentaxis unit state 2\n";
+constexpr std::string_view kTag = "bentaxis unit state 3\n";
 
 // FNV-1a, 64 bits: against bytes that were cut or changed, not against forgers.
 std::uint64_t checksum(const char* bytes, std::size_t size) {
@@ -88,6 +88,10 @@ void go_through(Stream& stream, TheInputs& inputs) {
   stream.part(inputs.load_share);
   stream.part(inputs.load_share_replaces_curve);
   stream.part(inputs.acceleration_given);
+  stream.part(inputs.torque_rate);
+  stream.part(inputs.suction_rate);
+  stream.part(inputs.delivery_rate);
+  stream.part(inputs.load_share_rate);
 }
 
 template <class Stream, class State>
