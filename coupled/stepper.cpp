@@ -40,25 +40,19 @@ class Stepper::Implementation {
   }
 
   void step_to(double time) {
-    const auto is_told = [this](const PassedEvent& event) { return event.time <= time_; };
-    events_.erase(std::remove_if(events_.begin(), events_.end(), is_told), events_.end());
-    // Beyond the end another one is expected as far away, so that steps go on over points there
-    // too.
-    if (time > end_) end_ = std::max(time, end_ + span_);
-    try {
-      advance_to(time, end_);
-    } catch (const ComputationError&) {
-      // What lies beyond the point need not be possible: it may be changed there.
-      restart();
-      try {
-        advance_to(time, time);
-      } catch (...) {
-        restart();
-        throw;
-      }
-    }
-    course_.state_at(time, state_);
-    time_ = time;
+    begin_step(time);
+    advance_or_restart(time, [&](double end) {
+      while (course_.time() < time) advance(end);
+    });
+    stand_at(time);
+  }
+
+  void step_towards(double time) {
+    begin_step(time);
+    advance_or_restart(time, [&](double end) {
+      if (course_.time() <= time_) advance(end);
+    });
+    stand_at(std::min(course_.time(), time));
   }
 
   std::vector<PassedEvent> passed() const {
@@ -74,12 +68,39 @@ class Stepper::Implementation {
   long steps() const { return course_.steps(); }
 
  private:
-  void advance_to(double time, double end) {
-    while (course_.time() < time) {
-      course_.advance(end);
-      note_events();
-      course_.forget_events();
+  void begin_step(double time) {
+    const auto is_told = [this](const PassedEvent& event) { return event.time <= time_; };
+    events_.erase(std::remove_if(events_.begin(), events_.end(), is_told), events_.end());
+    // Beyond the end another one is expected as far away, so that steps go on over points there
+    // too.
+    if (time > end_) end_ = std::max(time, end_ + span_);
+  }
+
+  template <class Advance>
+  void advance_or_restart(double time, Advance advance_until) {
+    try {
+      advance_until(end_);
+    } catch (const ComputationError&) {
+      // What lies beyond the point need not be possible: it may be changed there.
+      restart();
+      try {
+        advance_until(time);
+      } catch (...) {
+        restart();
+        throw;
+      }
     }
+  }
+
+  void advance(double end) {
+    course_.advance(end);
+    note_events();
+    course_.forget_events();
+  }
+
+  void stand_at(double time) {
+    course_.state_at(time, state_);
+    time_ = time;
   }
 
   void note_events() {
@@ -111,6 +132,7 @@ void Stepper::restart() { it_->restart(); }
 void Stepper::surround(const Surroundings& outside) { it_->surround(outside); }
 const Surroundings& Stepper::surroundings() const { return it_->surroundings(); }
 void Stepper::step_to(double time) { it_->step_to(time); }
+void Stepper::step_towards(double time) { it_->step_towards(time); }
 double Stepper::time() const { return it_->time(); }
 const SystemState& Stepper::state() const { return it_->state(); }
 std::vector<PassedEvent> Stepper::passed() const { return it_->passed(); }

@@ -63,6 +63,8 @@ ATTRIBUTES = {
 IDENTITY = {"name", "valueReference", "description", "causality", "variability", "initial"}
 NUMBER = {"declaredType", "unit", "displayUnit", "min", "max", "nominal", "start", "derivative", "reinit", "unbounded", "quantity"}
 
+INTERMEDIATE = {2: set(), 3: {"intermediateUpdate"}}
+
 # Names of the structured convention: identifiers joined by dots, with indices, derivatives in der( ).
 IDENTIFIER = r"[A-Za-z_][A-Za-z_0-9]*(\[\d+(,\d+)*\])?"
 STRUCTURED = re.compile(rf"^(der\()?{IDENTIFIER}(\.{IDENTIFIER})*(,\d+)?\)?$")
@@ -185,7 +187,17 @@ class Archives(unittest.TestCase):
                                 "DefaultExperiment", "ModelVariables", "ModelStructure"])
         for v in it.variables:
             self.assertIn(v.type, ("Real", "Boolean") if it.version == 2 else ("Float64", "Boolean"))
-            self.assertLessEqual(set(v.all), IDENTITY | (NUMBER if v.real else {"start"}), v.name)
+            self.assertLessEqual(set(v.all), IDENTITY | (NUMBER if v.real else {"start"}) | INTERMEDIATE[it.version], v.name)
+
+    @of_every_unit
+    def test_intermediate_values_are_those_of_continuous_inputs_and_outputs(self, it):
+        marked = {v.name for v in it.variables if v.all.get("intermediateUpdate") == "true"}
+        wanted = {v.name for v in it.variables if v.causality in ("input", "output") and v.variability == "continuous"}
+        self.assertEqual(marked, wanted if it.version == 3 else set())
+        simulation = it.root.find("CoSimulation")
+        for ability in ("providesIntermediateUpdate", "canReturnEarlyAfterIntermediateUpdate", "mightReturnEarlyFromDoStep",
+                        "hasEventMode"):
+            self.assertEqual(simulation.get(ability), "true" if it.version == 3 else None)
 
     @of_every_unit
     def test_names_and_references_are_unique_and_named_as_is_said(self, it):

@@ -665,5 +665,261 @@ TEST(Fmi3, ModelExchangeHasItsModes) {
   EXPECT_EQ(f.fmi3Terminate(unit.it), fmi3OK);
 }
 
+// A step to a time by as many steps as events make of it; how many there were.
+int step_with_events(Unit3& unit, double& time, double end) {
+  const Functions& f = library();
+  int events = 0;
+  while (time < end) {
+    EXPECT_EQ(unit.step(time, end - time), fmi3OK) << unit.messages.text;
+    EXPECT_EQ(unit.early, unit.last < end);
+    EXPECT_GT(unit.last, time);
+    EXPECT_TRUE(unit.event || !unit.early);
+    time = unit.last;
+    if (!unit.event) continue;
+    ++events;
+    EXPECT_EQ(f.fmi3EnterEventMode(unit.it), fmi3OK) << unit.messages.text;
+    EXPECT_EQ(unit.step(time, 1e-4), fmi3Error) << "in event mode";
+    bool again = true, end_all = true, nominals = true, states = true, timed = true;
+    double next = 0;
+    EXPECT_EQ(
+        f.fmi3UpdateDiscreteStates(unit.it, &again, &end_all, &nominals, &states, &timed, &next),
+        fmi3OK);
+    EXPECT_FALSE(again || end_all || nominals || states);
+    EXPECT_EQ(f.fmi3EnterStepMode(unit.it), fmi3OK);
+    unit.messages.text += "passed\n";
+  }
+  return events;
+}
+
+std::size_t count_in(const std::string& text, const std::string& words) {
+  std::size_t count = 0;
+  for (auto at = text.find(words); at != std::string::npos; at = text.find(words, at + 1)) ++count;
+  return count;
+}
+
+TEST(Fmi3, EventModeEndsStepsAtEvents) {
+  const Functions& f = library();
+  for (const char* name : {kHydraulic, "bap63_tooth_rattle.toml"}) {
+    const Resources resources(name);
+    Unit3 plain(resources, Steps3{});
+    Unit3 unit(resources, Steps3{true, true, {}});
+    plain.start();
+    unit.start();
+    EXPECT_EQ(f.fmi3EnterEventMode(plain.it), fmi3Error);
+    EXPECT_TRUE(plain.messages.has("eventModeUsed was false"));
+    EXPECT_EQ(unit.step(0, 1e-3), fmi3Error) << "a run begins in event mode";
+    EXPECT_EQ(f.fmi3EnterStepMode(unit.it), fmi3OK);
+    double time = 0;
+    int events = 0;
+    for (int i = 1; i <= 10; ++i) {
+      ASSERT_EQ(plain.step((i - 1) * 1e-3, 1e-3), fmi3OK) << plain.messages.text;
+      EXPECT_FALSE(plain.event || plain.early);
+      events += step_with_events(unit, time, i * 1e-3);
+    }
+    EXPECT_GT(events, 3);
+    EXPECT_EQ(count_in(plain.messages.text, "event at "), static_cast<std::size_t>(events)) << name;
+    expect_near(unit.outputs(), plain.outputs(), 1e-11);  // nothing else has changed
+  }
+}
+
+TEST(Fmi3, EventsWithinAStepArePassedWhereItMayNotEndEarly) {
+  const Resources resources(kHydraulic);
+  Unit3 plain(resources, Steps3{});
+  Unit3 unit(resources, Steps3{true, false, {}});
+  plain.start();
+  unit.start();
+  ASSERT_EQ(library().fmi3EnterStepMode(unit.it), fmi3OK);
+  ASSERT_EQ(plain.step(0, 0.01), fmi3OK);
+  ASSERT_EQ(unit.step(0, 0.01), fmi3OK);
+  EXPECT_FALSE(unit.event || unit.early);
+  EXPECT_EQ(unit.last, 0.01);
+  EXPECT_EQ(unit.outputs(), plain.outputs());
+}
+
+TEST(Fmi3, EventModeNamesTheNextBreakpoint) {
+  const Resources resources("bap63_load_step.toml");
+  const Functions& f = library();
+  Unit3 unit(resources, Steps3{true, true, {}});
+  unit.start();
+  const auto next_event = [&] {
+    bool again, end, nominals, states, timed = false;
+    double next = 0;
+    EXPECT_EQ(f.fmi3UpdateDiscreteStates(unit.it, &again, &end, &nominals, &states, &timed, &next),
+              fmi3OK);
+    return timed ? next : kNan;
+  };
+  EXPECT_EQ(next_event(), 0.1) << "where the throttle begins to close";
+  ASSERT_EQ(f.fmi3EnterStepMode(unit.it), fmi3OK);
+  double time = 0;
+  step_with_events(unit, time, 0.0999);
+  unit.messages.text.clear();
+  while (time < 0.1) {
+    ASSERT_EQ(unit.step(time, 0.001), fmi3OK) << unit.messages.text;
+    time = unit.last;
+    if (!unit.event) continue;
+    ASSERT_EQ(f.fmi3EnterEventMode(unit.it), fmi3OK);
+    if (time < 0.1) {
+      EXPECT_EQ(next_event(), 0.1);
+      ASSERT_EQ(f.fmi3EnterStepMode(unit.it), fmi3OK);
+    }
+  }
+  EXPECT_EQ(time, 0.1);
+  EXPECT_TRUE(unit.messages.has("event at 0.1 s: breakpoint")) << unit.messages.text;
+  EXPECT_NEAR(next_event(), 0.105, 1e-12);
+}
+
+TEST(Fmi3, IntermediateUpdatesAreTheStepsOfTheIntegrator) {
+  const Resources resources(kHydraulic);
+  const Functions& f = library();
+  const unsigned torque = resources["Td_z1_Nm"], other = resources["Rb1_x1_N"],
+                 share = resources["load_share"];
+  Unit3 unit(resources, Steps3{false, false, {torque, share}});
+  unit.start();
+  std::vector<std::pair<double, double>> seen;
+  bool never_set = true;
+  unit.messages.update = [&](double time, bool may_set, bool& returns, double& when) {
+    double value = kNan;
+    EXPECT_EQ(f.fmi3GetFloat64(unit.it, &torque, 1, &value, 1), fmi3OK);
+    seen.emplace_back(time, value);
+    EXPECT_EQ(f.fmi3GetFloat64(unit.it, &other, 1, &value, 1), fmi3Error);
+    EXPECT_EQ(f.fmi3SetFloat64(unit.it, &torque, 1, &value, 1), fmi3Error);
+    value = 1;
+    EXPECT_EQ(f.fmi3SetFloat64(unit.it, &share, 1, &value, 1), may_set ? fmi3OK : fmi3Error);
+    never_set = never_set && !may_set;
+    for (const fmi3Status status :
+         {f.fmi3Reset(unit.it), f.fmi3Terminate(unit.it), f.fmi3EnterEventMode(unit.it),
+          f.fmi3GetFMUState(unit.it, nullptr), unit.step(time, 1e-3)})
+      EXPECT_EQ(status, fmi3Error);
+    EXPECT_TRUE(unit.messages.has("in an intermediate update"));
+    if (seen.size() == 3) returns = true;  // which was not allowed
+    when = time;
+  };
+  bool event = false, terminate = false, early = false;
+  double last = 0;
+  ASSERT_EQ(f.fmi3DoStep(unit.it, 0, 0.005, true, &event, &terminate, &early, &last), fmi3OK)
+      << unit.messages.text;
+  EXPECT_TRUE(unit.messages.has("Rb1_x1_N is not one of the intermediate variables"));
+  EXPECT_TRUE(unit.messages.has("intermediateVariableSetRequested is false"));
+  EXPECT_TRUE(unit.messages.has("cannot return early where earlyReturnAllowed was false"));
+  EXPECT_FALSE(early || never_set);
+  ASSERT_GT(seen.size(), 20U);
+  EXPECT_EQ(seen.back().first, 0.005);
+  EXPECT_EQ(last, 0.005);
+  Unit3 plain(resources, Steps3{});
+  plain.start();
+  double time = 0;
+  for (const auto& [when, value] : seen) {
+    ASSERT_GT(when, time);
+    ASSERT_EQ(plain.step(time, when - time), fmi3OK) << plain.messages.text;
+    time = when;
+    double there = kNan;
+    ASSERT_EQ(f.fmi3GetFloat64(plain.it, &torque, 1, &there, 1), fmi3OK);
+    EXPECT_NEAR(there, value, 1e-10 * std::abs(value)) << when;
+  }
+}
+
+TEST(Fmi3, InputsOfIntermediateUpdatesAct) {
+  const Resources resources(kHydraulic);
+  const Functions& f = library();
+  const unsigned share = resources["load_share"];
+  constexpr double kRate = -40, kEnd = 0.005;
+  Unit2 line(resources);
+  line.start();
+  const int order = 1;
+  ASSERT_EQ(f.fmi2SetRealInputDerivatives(line.it, &share, 1, &order, &kRate), fmi2OK);
+  line.steps(1, kEnd);
+  // The end of what is held over one step, and over those between two updates.
+  const auto error_of = [&](bool with_updates) {
+    Unit3 unit(resources, Steps3{false, false, {share}});
+    unit.start();
+    unit.messages.update = [&](double time, bool may_set, bool&, double&) {
+      const double value = 1 + kRate * time;
+      if (may_set && with_updates) {
+        EXPECT_EQ(f.fmi3SetFloat64(unit.it, &share, 1, &value, 1), fmi3OK) << unit.messages.text;
+      }
+    };
+    EXPECT_EQ(unit.step(0, kEnd), fmi3OK) << unit.messages.text;
+    const unsigned pressure = resources["p_delivery_bar"];
+    double value = kNan;
+    EXPECT_EQ(f.fmi3GetFloat64(unit.it, &pressure, 1, &value, 1), fmi3OK);
+    return std::abs(value - line.get("p_delivery_bar"));
+  };
+  const double held = error_of(false), updated = error_of(true);
+  EXPECT_GT(held, 1);
+  EXPECT_LT(updated, held / 10) << held;
+}
+
+TEST(Fmi3, AnIntermediateUpdateEndsTheStep) {
+  const Resources resources(kHydraulic);
+  const unsigned torque = resources["Td_z1_Nm"];
+  Unit3 unit(resources, Steps3{false, true, {torque}});
+  Unit3 plain(resources, Steps3{});
+  unit.start();
+  plain.start();
+  double asked = 0.002;
+  unit.messages.update = [&](double time, bool, bool& returns, double& when) {
+    EXPECT_LE(time, 0.002);
+    returns = time > 0.001;
+    when = asked;
+  };
+  ASSERT_EQ(unit.step(0, 0.005), fmi3OK) << unit.messages.text;
+  EXPECT_TRUE(unit.early);
+  EXPECT_FALSE(unit.event);
+  EXPECT_EQ(unit.last, 0.002);
+  ASSERT_EQ(plain.step(0, 0.002), fmi3OK);
+  EXPECT_EQ(unit.outputs(), plain.outputs());
+  // A time that has passed is now; one that is none is not heard.
+  double first = 0;
+  asked = 0.001;
+  unit.messages.update = [&](double time, bool, bool& returns, double& when) {
+    first = time;
+    returns = true;
+    when = asked;
+  };
+  ASSERT_EQ(unit.step(0.002, 0.005), fmi3OK) << unit.messages.text;
+  EXPECT_TRUE(unit.early);
+  EXPECT_EQ(unit.last, first);
+  asked = kNan;
+  const double here = unit.last;
+  ASSERT_EQ(unit.step(here, 0.001), fmi3OK) << unit.messages.text;
+  EXPECT_FALSE(unit.early);
+  EXPECT_EQ(unit.last, here + 0.001);
+}
+
+TEST(Fmi3, AStepThatFailsOnItsWayLeavesAllAsItWas) {
+  const Resources resources("bap63_motoring.toml", "torque");
+  const Functions& f = library();
+  const unsigned torque = resources["drive_torque"];
+  Unit3 unit(resources, Steps3{false, false, {torque}});
+  unit.start();
+  const auto before = unit.outputs();
+  const auto set = [&](double value) { return f.fmi3SetFloat64(unit.it, &torque, 1, &value, 1); };
+  const auto read = [&] {
+    double value = kNan;
+    EXPECT_EQ(f.fmi3GetFloat64(unit.it, &torque, 1, &value, 1), fmi3OK);
+    return value;
+  };
+  const double first = read();
+  int updates = 0;
+  unit.messages.update = [&](double time, bool may_set, bool&, double&) {
+    ++updates;
+    if (may_set && time > 0.005) {
+      EXPECT_EQ(set(1e300), fmi3OK);
+    }
+  };
+  ASSERT_EQ(unit.step(0, 0.01), fmi3Discard) << unit.messages.text;
+  EXPECT_GT(updates, 3);
+  EXPECT_FALSE(unit.early || unit.event);
+  EXPECT_EQ(unit.last, 0);
+  EXPECT_EQ(read(), first);
+  expect_near(unit.outputs(), before, 0);
+  unit.messages.update = [](double, bool, bool&, double&) {};
+  ASSERT_EQ(unit.step(0, 0.01), fmi3OK) << unit.messages.text;
+  Unit3 plain(resources, Steps3{});
+  plain.start();
+  ASSERT_EQ(plain.step(0, 0.01), fmi3OK);
+  expect_near(unit.outputs(), plain.outputs(), 1e-12);
+}
+
 }  // namespace
 }  // namespace bentaxis::fmu

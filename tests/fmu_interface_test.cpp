@@ -97,11 +97,18 @@ TEST(UnitLibrary, FindsResourcesByEncodedUrisAndByPaths) {
 TEST(UnitLibrary, RefusesWhatItDoesNotHaveOfFmi3) {
   const Resources resources(kRated);
   Messages messages;
-  EXPECT_EQ(
-      library().fmi3InstantiateCoSimulation("p", kToken, resources.path().c_str(), false, false,
-                                            true, false, nullptr, 0, &messages, log3, nullptr),
-      nullptr);
-  EXPECT_TRUE(messages.has("hasEventMode"));
+  const auto refused_with = [&](std::vector<unsigned> intermediate,
+                                fmi3IntermediateUpdateCallback update, const char* words) {
+    messages.text.clear();
+    EXPECT_EQ(library().fmi3InstantiateCoSimulation("p", kToken, resources.path().c_str(), false,
+                                                    false, true, true, intermediate.data(),
+                                                    intermediate.size(), &messages, log3, update),
+              nullptr);
+    EXPECT_TRUE(messages.has(words)) << messages.text;
+  };
+  refused_with({resources["pump.tilt_deg"]}, update3, "pump.tilt_deg has no intermediate values");
+  refused_with({100000}, update3, "no variable with the reference 100000");
+  refused_with({resources["Td_z1_Nm"]}, nullptr, "no function to call for them");
   EXPECT_EQ(library().fmi3InstantiateScheduledExecution("p", kToken, resources.path().c_str(),
                                                         false, false, &messages, log3, nullptr,
                                                         nullptr, nullptr),

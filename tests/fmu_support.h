@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -45,9 +46,10 @@ inline const Functions& library() {
   return functions;
 }
 
-/// What an instance has said.
+/// What an instance has said, and what it calls within a step.
 struct Messages {
   std::string text;  // all, one line each: "status category: message"
+  std::function<void(double time, bool may_set, bool& returns, double& when)> update;
   bool has(const std::string& words) const { return text.find(words) != std::string::npos; }
 };
 
@@ -68,6 +70,13 @@ inline void log3(fmi3InstanceEnvironment environment, fmi3Status status, fmi3Str
   if (environment == nullptr) return;
   static_cast<Messages*>(environment)->text +=
       std::to_string(status) + " " + category + ": " + message + "\n";
+}
+
+inline void update3(fmi3InstanceEnvironment environment, fmi3Float64 time,
+                    fmi3Boolean set_requested, fmi3Boolean get_allowed, fmi3Boolean finished,
+                    fmi3Boolean /*can_return*/, fmi3Boolean* returns, fmi3Float64* when) {
+  EXPECT_TRUE(get_allowed && finished);
+  static_cast<Messages*>(environment)->update(time, set_requested, *returns, *when);
 }
 
 constexpr const char* kToken = "{01234567-89ab-cdef-0123-456789abcdef}";
@@ -179,8 +188,21 @@ struct Unit2 {
   int done = 0;
 };
 
+// What an importer of FMI 3 says of its co-simulation.
+struct Steps3 {
+  bool event_mode = false, early_return = false;
+  std::vector<unsigned> intermediate = {};
+};
+
 // The same of FMI 3.
 struct Unit3 {
+  Unit3(const Resources& from, const Steps3& steps) : resources(from) {
+    it = f.fmi3InstantiateCoSimulation(
+        "pump", kToken, from.path().c_str(), false, true, steps.event_mode, steps.early_return,
+        steps.intermediate.data(), steps.intermediate.size(), &messages, log3,
+        steps.intermediate.empty() ? nullptr : update3);
+    EXPECT_NE(it, nullptr) << messages.text;
+  }
   explicit Unit3(const Resources& from, bool exchange = false) : resources(from) {
     const std::string path = from.path().string() + "/";
     it = exchange ? f.fmi3InstantiateModelExchange("pump", kToken, path.c_str(), false, false,

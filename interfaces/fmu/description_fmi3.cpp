@@ -21,7 +21,9 @@ void add_kinds(pugi::xml_node root) {
   pugi::xml_node simulation = root.append_child("CoSimulation");
   set_capabilities(simulation);
   set(simulation, "canHandleVariableCommunicationStepSize", true);
-  set(simulation, "hasEventMode", false);  // a step passes its events by itself
+  for (const char* ability : {"providesIntermediateUpdate", "mightReturnEarlyFromDoStep",
+                              "canReturnEarlyAfterIntermediateUpdate", "hasEventMode"})
+    set(simulation, ability, true);
 }
 
 void add_variables(pugi::xml_node root, const std::vector<Variable>& variables) {
@@ -30,6 +32,7 @@ void add_variables(pugi::xml_node root, const std::vector<Variable>& variables) 
     pugi::xml_node node = all.append_child(variable.boolean ? "Boolean" : "Float64");
     set_identity(node, variable);
     set_values(node, variable);
+    if (has_intermediate_values(variable)) set(node, "intermediateUpdate", true);
     if (variable.role == Role::derivative && variable.state)
       node.append_attribute("derivative") = *variable.state;
   }

@@ -21,6 +21,7 @@ using bentaxis::fmu::kEvent;
 using bentaxis::fmu::kGet;
 using bentaxis::fmu::kInitialization;
 using bentaxis::fmu::kInstantiated;
+using bentaxis::fmu::kIntermediate;
 using bentaxis::fmu::kKnown;
 using bentaxis::fmu::kRunning;
 using bentaxis::fmu::kSet;
@@ -31,6 +32,7 @@ using bentaxis::fmu::Refused;
 using bentaxis::fmu::require_place;
 using bentaxis::fmu::require_places;
 using bentaxis::fmu::Status;
+using bentaxis::fmu::Stepping;
 using Kind = Instance::Kind;
 
 // All variables are scalars.
@@ -70,14 +72,15 @@ Log log_to(fmi3LogMessageCallback callback, fmi3InstanceEnvironment environment,
 }
 
 fmi3Instance instantiate(const char* function, fmi3String name, fmi3String token, fmi3String path,
-                         Kind kind, bool event_mode, const Log& log) noexcept {
+                         Kind kind, const Log& log,
+                         const std::function<Stepping()>& stepping = {}) noexcept {
   try {
     try {
       if (name == nullptr || *name == 0) throw Refused("the instance needs a name");
       if (token == nullptr) throw Refused("the instantiation token is missing");
       if (path == nullptr) throw Refused("the path of resources is missing");
-      if (event_mode) throw Refused("co-simulation has no event mode: hasEventMode is false");
-      return new Instance(bentaxis::fmu::path_of_text(path), token, kind, log);
+      return new Instance(bentaxis::fmu::path_of_text(path), token, kind, log,
+                          stepping ? stepping() : Stepping{});
     } catch (const std::exception& error) {
       log.say(Status::error, std::string(function) + ": " + error.what());
     }
@@ -100,24 +103,36 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token,
                                           fmi3Boolean logging_on,
                                           fmi3InstanceEnvironment environment,
                                           fmi3LogMessageCallback log) {
-  return instantiate(__func__, name, token, resource_path, Kind::model_exchange, false,
+  return instantiate(__func__, name, token, resource_path, Kind::model_exchange,
                      log_to(log, environment, logging_on));
 }
 
 fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token,
                                          fmi3String resource_path, fmi3Boolean /*visible*/,
                                          fmi3Boolean logging_on, fmi3Boolean event_mode_used,
-                                         fmi3Boolean /*early_return_allowed*/,
-                                         const fmi3ValueReference /*intermediate*/[],
+                                         fmi3Boolean early_return_allowed,
+                                         const fmi3ValueReference intermediate[],
                                          size_t intermediates, fmi3InstanceEnvironment environment,
                                          fmi3LogMessageCallback log,
-                                         fmi3IntermediateUpdateCallback /*update*/) {
-  const Log sink = log_to(log, environment, logging_on);
-  if (intermediates > 0)
-    sink.say(Status::warning, std::string(__func__) +
-                                  ": no intermediate updates: providesIntermediateUpdate is false");
-  return instantiate(__func__, name, token, resource_path, Kind::co_simulation, event_mode_used,
-                     sink);
+                                         fmi3IntermediateUpdateCallback update) {
+  const auto stepping = [&] {
+    require_places(intermediates, {intermediate});
+    if (intermediates > 0 && update == nullptr)
+      throw Refused("there are intermediate variables, but no function to call for them");
+    Stepping it{event_mode_used, early_return_allowed, {}, {}};
+    if (intermediates > 0) it.intermediate.assign(intermediate, intermediate + intermediates);
+    if (update != nullptr)
+      it.update = [=](double time, bool may_set) -> std::optional<double> {
+        bool returns = false;
+        double when = time;
+        update(environment, time, may_set && intermediates > 0, intermediates > 0, true,
+               early_return_allowed, &returns, &when);
+        return returns ? std::optional<double>(when) : std::nullopt;
+      };
+    return it;
+  };
+  return instantiate(__func__, name, token, resource_path, Kind::co_simulation,
+                     log_to(log, environment, logging_on), stepping);
 }
 
 fmi3Instance fmi3InstantiateScheduledExecution(
@@ -144,13 +159,12 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolera
   });
 }
 fmi3Status fmi3EnterEventMode(fmi3Instance instance) {
-  return call(instance, __func__, Kind::model_exchange, kContinuous,
-              [](Instance& it) { it.enter_event_mode(); });
+  return call(instance, __func__, kContinuous | kStep, [](Instance& it) { it.enter_event_mode(); });
 }
 
 fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                           fmi3Float64 values[], size_t value_count) {
-  return call(instance, __func__, kGet, [&](Instance& it) {
+  return call(instance, __func__, kGet | kIntermediate, [&](Instance& it) {
     require_places(count, {vr, values});
     require_scalars(count, value_count);
     it.numbers(vr, count, values);
@@ -158,7 +172,7 @@ fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference vr[], 
 }
 fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                           const fmi3Float64 values[], size_t value_count) {
-  return call(instance, __func__, kSet, [&](Instance& it) {
+  return call(instance, __func__, kSet | kIntermediate, [&](Instance& it) {
     require_places(count, {vr, values});
     require_scalars(count, value_count);
     it.set_numbers(vr, count, values);
@@ -303,15 +317,14 @@ fmi3Status fmi3SetShiftFraction(fmi3Instance instance, const fmi3ValueReference 
 }
 
 fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance instance) {
-  return call(instance, __func__, Kind::model_exchange, kInitialization | kEvent,
-              [](Instance& /*it*/) {});
+  return call(instance, __func__, kInitialization | kEvent, [](Instance& /*it*/) {});
 }
 fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean* again,
                                     fmi3Boolean* terminate, fmi3Boolean* nominals_changed,
                                     fmi3Boolean* states_changed,
                                     fmi3Boolean* next_event_time_defined,
                                     fmi3Float64* next_event_time) {
-  return call(instance, __func__, Kind::model_exchange, kEvent, [&](Instance& it) {
+  return call(instance, __func__, kEvent, [&](Instance& it) {
     require_places(1, {again, terminate, nominals_changed, states_changed, next_event_time_defined,
                        next_event_time});
     const Instance::Event event = it.update_discrete_states();
@@ -348,7 +361,8 @@ fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance instance, size_t* count)
 // Co-simulation.
 
 fmi3Status fmi3EnterStepMode(fmi3Instance instance) {
-  return refuse(instance, __func__, "there is no event mode to leave: hasEventMode is false");
+  return call(instance, __func__, Kind::co_simulation, kEvent,
+              [](Instance& it) { it.enter_step_mode(); });
 }
 fmi3Status fmi3GetOutputDerivatives(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
                                     size_t count, const fmi3Int32 /*orders*/[],
@@ -368,6 +382,8 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 time, fmi3Float64 step,
     *last_successful_time = it.last_time();
     const Status status = it.step(time, step);
     *last_successful_time = it.last_time();
+    *event_handling_needed = status == Status::ok && it.at_event();
+    *early_return = status == Status::ok && it.stopped_early();
     return status;
   });
 }

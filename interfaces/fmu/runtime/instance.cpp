@@ -31,6 +31,8 @@ const char* word_of(unsigned mode) {
       return "between steps";
     case kTerminated:
       return "after termination";
+    case kIntermediate:
+      return "in an intermediate update";
     default:
       break;
   }
@@ -44,14 +46,21 @@ void require_finite(double value, const char* what) {
 }  // namespace
 
 Instance::Instance(const std::filesystem::path& resources, const std::string& token, Kind kind,
-                   Log log)
-    : kind_(kind), log_(std::move(log)), resources_(read_resources(resources)) {
+                   Log log, Stepping stepping)
+    : kind_(kind),
+      log_(std::move(log)),
+      stepping_(std::move(stepping)),
+      resources_(read_resources(resources)) {
   if (token != resources_.token)
     throw Refused("the token " + shown(token, 100) +
                   " is that of another FMU than its resources: " + resources_.token);
   variables_ = variables_of(resources_.the_case, resources_.choice);
   for (const Variable& it : variables_)
     first_parameters_.push_back(it.role == Role::parameter ? it.start.value() : 0);
+  for (const Reference reference : stepping_.intermediate)
+    if (!has_intermediate_values(variable(reference)))
+      throw Refused(variable(reference).name +
+                    " has no intermediate values: those are of continuous inputs and of outputs");
   first_inputs_ = Plant(resources_.the_case, resources_.choice, kind).first_inputs();
   tolerance_ = resources_.choice.tolerance;
   reset();
@@ -131,7 +140,7 @@ void Instance::exit_initialization() {
     mode_ = kFailed;
     throw;
   }
-  mode_ = kind_ == Kind::co_simulation ? kStep : kEvent;
+  mode_ = kind_ == Kind::co_simulation && !stepping_.event_mode ? kStep : kEvent;
 }
 
 void Instance::terminate() {
@@ -151,6 +160,7 @@ void Instance::reset() {
   plant_.reset();
   open_.reset();
   started_ = false;
+  at_event_ = stopped_early_ = false;
 }
 
 Case Instance::case_as_set(const std::vector<double>& parameters) const {
@@ -173,7 +183,7 @@ void Instance::start() {
 }
 
 void Instance::settle() {
-  if ((mode_ & (kInitialization | kRunning)) == 0) return;
+  if ((mode_ & (kInitialization | kRunning | kIntermediate)) == 0) return;
   const bool changed = wanted_ != parameters_;
   if (mode_ == kInitialization) {
     if (!started_ || changed || inputs_changed_) start();
@@ -213,24 +223,96 @@ Status Instance::step(double time, double size) {
   settle();
   require_inputs_until(end);
   open_.reset();
+  at_event_ = stopped_early_ = false;
+  // A step below the resolution of time is none.
+  if (!(end - start_time_ > plant_->time())) {
+    now_ = end;
+    return Status::ok;
+  }
   try {
-    // A step below the resolution of time is none.
-    if (end - start_time_ > plant_->time()) {
-      const double size_of_plant = end - start_time_ - plant_->time();
-      plant_->step(end - start_time_);
-      advance(inputs_, size_of_plant);
-      if (log_.tells_events())
-        for (const Plant::Passed& event : plant_->passed())
-          log_.event("event at " + number_text(start_time_ + event.time) + " s: " + event.what);
-    }
+    if (stepping_.update || (stepping_.event_mode && stepping_.early_return))
+      step_by_step(now_, end);
+    else
+      step_whole(end);
+    stopped_early_ = now_ < end;
   } catch (const ComputationError& error) {
     return log_.say(Status::discard, error.what());
   }
-  now_ = end;
   return Status::ok;
 }
 
+void Instance::step_whole(double end) {
+  const double before = plant_->time();
+  plant_->step(end - start_time_);
+  advance(inputs_, plant_->time() - before);
+  note_events();
+  now_ = end;
+}
+
+// Ends at the first event where the importer allows it, and calls its intermediate update after
+// each step of the integrator.
+void Instance::step_by_step(double start, double end) {
+  // What is set starts the integrator anew: each update may not.
+  constexpr double kLeastShareBetweenSettings = 0.05;
+  const PlantState before = plant_->state();
+  const Inputs inputs = inputs_;
+  double stop = end - start_time_, set_at = plant_->time();
+  try {
+    while (plant_->time() < stop && !(at_event_ && stepping_.early_return)) {
+      const double was = plant_->time();
+      plant_->step_towards(stop);
+      advance(inputs_, plant_->time() - was);
+      note_events();
+      now_ = plant_->time() == end - start_time_ ? end : start_time_ + plant_->time();
+      if (!stepping_.update) continue;
+      const bool may_set = plant_->time() - set_at >= kLeastShareBetweenSettings * (end - start);
+      if (may_set) set_at = plant_->time();
+      stop = intermediate_update(stop, may_set && plant_->time() < stop);
+    }
+  } catch (const ComputationError&) {
+    plant_->set_state(before);
+    inputs_ = inputs;
+    inputs_changed_ = at_event_ = false;
+    now_ = start;
+    throw;
+  }
+}
+
+double Instance::intermediate_update(double end, bool may_set) {
+  mode_ = kIntermediate;
+  may_set_ = may_set;
+  const std::optional<double> early = stepping_.update(now_, may_set);
+  if (mode_ != kIntermediate)
+    throw std::runtime_error("a call within the intermediate update has failed");
+  mode_ = kStep;
+  settle();
+  open_.reset();
+  if (!early) return end;
+  if (!stepping_.early_return) {
+    log_.say(Status::warning,
+             "the step goes on: it cannot return early where earlyReturnAllowed was false");
+    return end;
+  }
+  return std::isfinite(*early) ? std::clamp(*early - start_time_, plant_->time(), end) : end;
+}
+
+void Instance::note_events() {
+  at_event_ = false;
+  for (const Plant::Passed& event : plant_->passed()) {
+    if (log_.tells_events())
+      log_.event("event at " + number_text(start_time_ + event.time) + " s: " + event.what);
+    at_event_ = stepping_.event_mode && event.time == plant_->time();
+  }
+}
+
+void Instance::enter_step_mode() {
+  settle();
+  mode_ = kStep;
+}
+
 void Instance::enter_event_mode() {
+  if (kind_ == Kind::co_simulation && !stepping_.event_mode)
+    throw Refused("this instance has no event mode: eventModeUsed was false");
   settle();
   mode_ = kEvent;
   if (log_.tells_events()) log_.event("event at " + number_text(now_) + " s");
@@ -238,7 +320,7 @@ void Instance::enter_event_mode() {
 
 Instance::Event Instance::update_discrete_states() {
   settle();
-  const Plant::Event event = plant_->pass_event();
+  const Plant::Event event = open_plant().pass_event();
   Event told{event.states_changed, {}};
   if (event.next_time) told.next_time = start_time_ + *event.next_time;
   return told;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -23,11 +24,12 @@ namespace bentaxis::fmu {
 enum Mode : unsigned {
   kInstantiated = 1,
   kInitialization = 2,
-  kEvent = 4,       ///< of model exchange
+  kEvent = 4,       ///< of model exchange, and of co-simulation where it is used
   kContinuous = 8,  ///< of model exchange
   kStep = 16,       ///< of co-simulation, between two steps
   kTerminated = 32,
-  kFailed = 64,  ///< a computation failed: only a saved state or a reset lead on
+  kFailed = 64,         ///< a computation failed: only a saved state or a reset lead on
+  kIntermediate = 128,  ///< within a step of co-simulation, while the importer is called
 };
 inline constexpr unsigned kRunning = kEvent | kContinuous | kStep;
 inline constexpr unsigned kKnown = kInitialization | kRunning | kTerminated | kFailed;
@@ -39,13 +41,25 @@ class Refused : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// How co-simulation steps, by what FMI 3 offers beyond FMI 2.
+struct Stepping {
+  bool event_mode = false;                  ///< events are passed in event mode
+  bool early_return = false;                ///< a step may end before its end
+  std::vector<std::uint32_t> intermediate;  ///< what may be read and set while a step is computed
+  /// The importer's, called where the integrator has got to: its time, and whether inputs may be
+  /// set. Returns the time at which it wants the step to end early, if it does.
+  std::function<std::optional<double>(double time, bool may_set)> update;
+};
+
 class Instance {
  public:
   using Kind = Plant::Kind;
   using Reference = std::uint32_t;
 
-  /// @throws InputError where the case cannot be simulated, Refused where the token is another
-  Instance(const std::filesystem::path& resources, const std::string& token, Kind kind, Log log);
+  /// @throws InputError where the case cannot be simulated, Refused where the token is another or a
+  /// variable has no intermediate values
+  Instance(const std::filesystem::path& resources, const std::string& token, Kind kind, Log log,
+           Stepping stepping = {});
 
   /// Runs one call. What it throws is said and made a status; nothing is thrown.
   /// @param function  its name, for messages
@@ -104,14 +118,21 @@ class Instance {
   /// @return ok, or discard where the pump cannot be followed so far: it then stands where it stood
   Status step(double time, double size);
   double last_time() const { return now_; }
+  /// Of the last step, where event mode is used: whether it has ended at an event.
+  bool at_event() const { return at_event_; }
+  /// Whether it has ended before its end, in which case last_time() says when.
+  bool stopped_early() const { return stopped_early_; }
+  void enter_step_mode();
 
-  // Model exchange.
+  // Events, of model exchange and of co-simulation with event mode.
   struct Event {
     bool states_changed = false;
     std::optional<double> next_time;  ///< of the importer
   };
   void enter_event_mode();
   Event update_discrete_states();
+
+  // Model exchange.
   void enter_continuous_mode();
   bool step_completed();  ///< whether event mode should be entered
   void set_time(double time);
@@ -145,7 +166,8 @@ class Instance {
   /// The least value of an input, as parameters are set; none where it has no bound.
   std::optional<double> least_of(const Variable& input) const;
   void require_inputs_until(double end) const;
-  double& input(Input which);
+  /// @throws Refused where an intermediate update may not read, or set, the variable
+  void require_intermediate(const Variable& it, bool set) const;
 
   /// The case with the parameters as they are set.
   /// @throws InputError where a file that says the same would be refused
@@ -155,12 +177,18 @@ class Instance {
   void settle();
   void start();
   Plant& open_plant();
+  void step_whole(double end);
+  void step_by_step(double start, double end);
+  /// The importer's intermediate update. @return where the step is to end, s of the plant
+  double intermediate_update(double end, bool may_set);
+  void note_events();
   const SavedState& known_state(void* state) const;
   SavedState present() const;
   void put_state(void** place, SavedState state);
 
   Kind kind_;
   Log log_;
+  Stepping stepping_;
   Resources resources_;
   std::vector<Variable> variables_;
   std::vector<double> first_parameters_;
@@ -175,6 +203,7 @@ class Instance {
   std::vector<double> parameters_, wanted_;
   Inputs inputs_;
   bool inputs_changed_ = false;
+  bool at_event_ = false, stopped_early_ = false, may_set_ = false;
   std::unique_ptr<Plant> plant_;
   bool started_ = false;
   // The equations at the present state, of co-simulation: made where someone asks for them.

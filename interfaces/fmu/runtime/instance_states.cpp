@@ -113,8 +113,9 @@ void Instance::deserialize(const char* bytes, std::size_t size, void** state) {
   SavedState read = state_of(bytes, size, resources_.token);
   const bool one_mode =
       read.mode != 0 && (read.mode & (read.mode - 1)) == 0 && read.mode <= kFailed;
-  const unsigned foreign =
-      kind_ == Kind::co_simulation ? unsigned{kEvent} | kContinuous : unsigned{kStep};
+  unsigned foreign = kStep;
+  if (kind_ == Kind::co_simulation)
+    foreign = unsigned{kContinuous} | (stepping_.event_mode ? 0U : unsigned{kEvent});
   if (one_mode && (read.mode & foreign) != 0)
     throw InputError("the bytes are a state of the other interface type");
   const bool runs = (read.mode & kRunning) != 0;

@@ -20,25 +20,6 @@ std::size_t Instance::count_of(Role role) const {
       variables_.begin(), variables_.end(), [&](const Variable& it) { return it.role == role; }));
 }
 
-double& Instance::input(Input which) {
-  switch (which) {
-    case Input::speed:
-      return inputs_.speed;
-    case Input::acceleration:
-      return inputs_.acceleration;
-    case Input::torque:
-      return inputs_.torque;
-    case Input::suction:
-      return inputs_.suction;
-    case Input::delivery:
-      return inputs_.delivery;
-    case Input::load_share:
-    case Input::load_share_replaces_curve:
-      break;
-  }
-  return inputs_.load_share;
-}
-
 // States, rates and indicators at the present time. Of co-simulation the plant has none by itself.
 Plant& Instance::open_plant() {
   if (!plant_) throw Refused("the pump has not been started");
@@ -56,8 +37,9 @@ double Instance::number(Reference reference) {
   const Variable& it = variable(reference);
   if (it.boolean) throw Refused(it.name + " is a Boolean");
   if (it.role == Role::time) return now_;
+  if (mode_ == kIntermediate) require_intermediate(it, false);
   if (it.role == Role::parameter) return wanted_[reference];
-  if (it.role == Role::input) return input(it.input);
+  if (it.role == Role::input) return input_of(inputs_, it.input);
   if (mode_ == kInstantiated) throw Refused(it.name + " is not known before initialization");
   settle();
   if (!plant_) throw Refused(it.name + " is not known: the pump has not been started");
@@ -84,6 +66,14 @@ bool Instance::flag(Reference reference) {
   settle();
   if (!plant_) throw Refused(it.name + " is not known: the pump has not been started");
   return plant_->flags().at(it.place);
+}
+
+void Instance::require_intermediate(const Variable& it, bool set) const {
+  const auto& listed = stepping_.intermediate;
+  if (std::find(listed.begin(), listed.end(), it.reference) == listed.end())
+    throw Refused(it.name + " is not one of the intermediate variables of this instance");
+  if (set && !may_set_)
+    throw Refused(it.name + " cannot be set now: intermediateVariableSetRequested is false");
 }
 
 void Instance::require_settable(const Variable& it, double value) const {
@@ -180,6 +170,7 @@ void Instance::set_numbers(const Reference* references, std::size_t count, const
   for (std::size_t i = 0; i < count; ++i) {
     const Variable& it = variable(references[i]);
     if (it.boolean) throw Refused(it.name + " is a Boolean");
+    if (mode_ == kIntermediate) require_intermediate(it, true);
     require_settable(it, values[i]);
   }
   for (std::size_t i = 0; i < count; ++i) {
@@ -188,7 +179,7 @@ void Instance::set_numbers(const Reference* references, std::size_t count, const
       wanted_[it.reference] = values[i];
       continue;
     }
-    double& place = input(it.input);
+    double& place = input_of(inputs_, it.input);
     const bool first = it.input == Input::acceleration && !inputs_.acceleration_given;
     if (place == values[i] && !first) continue;
     place = values[i];

@@ -173,10 +173,11 @@ class Plant::Implementation {
 
   void step(double time) {
     stepper_->step_to(time);
-    advance(inputs_, time - time_);
-    time_ = time;
-    state_ = stepper_->state();
-    fresh_ = false;
+    stand_where_stepped();
+  }
+  void step_towards(double time) {
+    stepper_->step_towards(time);
+    stand_where_stepped();
   }
 
   std::vector<Passed> passed() const {
@@ -281,6 +282,13 @@ class Plant::Implementation {
   }
 
  private:
+  void stand_where_stepped() {
+    advance(inputs_, stepper_->time() - time_);
+    time_ = stepper_->time();
+    state_ = stepper_->state();
+    fresh_ = false;
+  }
+
   // @param anew  models are built anew: of another case, or by another start
   void go_on_from(const PlantState& state, bool anew) {
     load_size_ = state.load_size;
@@ -511,6 +519,7 @@ void Plant::set_inputs(const Inputs& inputs) { it_->set_inputs(inputs); }
 const Inputs& Plant::inputs() const { return it_->inputs(); }
 double Plant::time() const { return it_->time(); }
 void Plant::step(double time) { it_->step(time); }
+void Plant::step_towards(double time) { it_->step_towards(time); }
 std::vector<Plant::Passed> Plant::passed() const { return it_->passed(); }
 std::size_t Plant::state_count() const { return it_->open().states().size(); }
 std::vector<double> Plant::states() const { return it_->open().values(); }

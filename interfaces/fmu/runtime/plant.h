@@ -77,6 +77,9 @@ class Plant {
   /// of the integrator go on over communication points where inputs stay.
   /// @throws ComputationError where the motion cannot be followed; the plant then stands at time()
   void step(double time);
+  /// The same to the end of the next step of the integrator or to the next event, where that comes
+  /// before `time`.
+  void step_towards(double time);
   /// Events of the last step: when, s (FMI's less the start time), and in words.
   struct Passed {
     double time = 0;

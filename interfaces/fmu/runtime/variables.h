@@ -58,6 +58,11 @@ struct Variable {
   std::size_t place = 0;
 };
 
+/// Whether it can be read, an input also set, while a step of co-simulation is computed (FMI 3).
+inline bool has_intermediate_values(const Variable& it) {
+  return !it.boolean && (it.role == Role::input || it.role == Role::output);
+}
+
 /// What a unit is besides its case: kept beside it, in resources/unit.txt, "key value" per line.
 struct UnitChoice {
   Drive drive = Drive::speed;

@@ -53,7 +53,10 @@ class Stepper {
   /// state()
   ///         are then what they were
   void step_to(double time);
-  /// Events of the last step_to(), up to time(), in their order.
+  /// The same to the end of the next step of the integrator, where that comes before `time`. An
+  /// event ends such a step: those of passed() are then at time().
+  void step_towards(double time);
+  /// Events of the last step_to() or step_towards(), up to time(), in their order.
   std::vector<PassedEvent> passed() const;
   double time() const;
   const SystemState& state() const;
