@@ -83,11 +83,28 @@ class Archives(unittest.TestCase):
         self.assertEqual(self.write(program=PROGRAM).returncode, 0)
         self.assertEqual((self.folder / "pump.fmu").read_bytes(), alone)
 
+    def test_sources_are_packed_where_they_are_asked_for(self):
+        sources = self.folder / "lib/bentaxis/fmu/sources"
+        (sources / "bentaxis/core").mkdir(parents=True)
+        (sources / "buildDescription.xml").write_bytes(b"<fmiBuildDescription/>")
+        (sources / "bentaxis/core/b.cpp").write_bytes(b"int b;")
+        (sources / "bentaxis/a.h").write_bytes(b"")
+        self.assertEqual(self.write("--fmi", 3, "--sources").returncode, 0)
+        with zipfile.ZipFile(self.folder / "pump.fmu") as archive:
+            packed = [name for name in archive.namelist() if name.startswith("sources/")]
+            self.assertEqual(packed, ["sources/bentaxis/a.h", "sources/bentaxis/core/b.cpp", "sources/buildDescription.xml"])
+            self.assertEqual(archive.read("sources/bentaxis/core/b.cpp"), b"int b;")
+        self.assertEqual(self.write("--fmi", 3).returncode, 0)
+        with zipfile.ZipFile(self.folder / "pump.fmu") as archive:
+            self.assertFalse([name for name in archive.namelist() if name.startswith("sources/")])
+
     def test_what_cannot_be_is_refused(self):
         refusals = [(("--platforms", "x86_64-linux,x86_64-linux"), "--platforms x86_64-linux: is specified more than once"),
                     (("--platforms", "x86_64-darwin"), "aarch64-linux"),
                     (("--fmi", "2", "--platforms", "aarch64-linux"), "--platforms aarch64-linux: FMI 2.0 has no folder for it")]
+        refusals.append((("--fmi", "2", "--sources"), "--sources: source code of FMI 2.0 must be C"))
         if not (PROGRAM.parents[1] / "modules/fmu").exists():
+            refusals.append((("--fmi", "3", "--sources"), "--sources: they are not installed; scripts/build_fmu_platforms collects them"))
             self.library.unlink()
             refusals.append((("--platforms", "x86_64-windows"), "--platforms x86_64-windows: its library is not installed; "
                              "scripts/build_fmu_platforms builds it"))

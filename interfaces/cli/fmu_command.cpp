@@ -121,6 +121,8 @@ Command add_fmu_command(CommandParser program) {
       .choices("--platforms", options->platforms, fmu::platform_names(),
                "whose libraries are in the FMU")
       .text("x86_64-linux,x86_64-windows,aarch64-linux [all that are installed]");
+  command.flag("--sources", options->unit.sources,
+               "also pack the C++ sources of the library, for other platforms (--fmi 3)");
   command
       .option(
           "--accuracy", options->unit.tolerance,

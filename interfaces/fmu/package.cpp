@@ -144,6 +144,8 @@ std::string unit_archive(const Case& the_case, const UnitOptions& options) {
       files.push_back({"terminalsAndIcons/terminalsAndIcons.xml", std::move(terminals)});
   for (const PlatformLibrary& library : libraries)
     files.push_back({library.place, library.bytes, true});
+  if (options.sources)
+    for (ArchiveFile& file : source_files(options.version)) files.push_back(std::move(file));
   files.push_back({"resources/case.toml", kept.text});
   for (const KeptCase::Curve& curve : kept.curves)
     files.push_back({"resources/" + curve.name, curve.bytes});

@@ -30,6 +30,7 @@ constexpr std::array<Facts, 3> kFacts = {
      {"aarch64-linux", nullptr, ".so", "Linux on 64-bit ARM"}}};
 
 constexpr InputKind kLibrary = {"the library of an FMU", 64 * kMebibyte};
+constexpr InputKind kSource = {"a source of an FMU", 64 * kMebibyte};
 
 const Facts& facts_of(Platform platform) { return kFacts[static_cast<std::size_t>(platform)]; }
 
@@ -37,14 +38,20 @@ std::string library_name(Platform platform) {
   return std::string(kModelIdentifier) + facts_of(platform).ending;
 }
 
-// The folder with the library of a platform; empty where there is none.
-fs::path folder_of(Platform platform) {
+// Where libraries and sources are installed: the folder that has a file; empty where none has it.
+fs::path folder_with(const fs::path& file) {
   for (const fs::path& modules : module_folders()) {
-    fs::path folder = modules / "fmu" / facts_of(platform).name;
     std::error_code none;
-    if (fs::is_regular_file(folder / library_name(platform), none)) return folder;
+    if (fs::is_regular_file(modules / "fmu" / file, none)) return modules / "fmu";
   }
   return {};
+}
+
+// The folder with the library of a platform; empty where there is none.
+fs::path folder_of(Platform platform) {
+  const fs::path name = facts_of(platform).name;
+  const fs::path folder = folder_with(name / library_name(platform));
+  return folder.empty() ? folder : folder / name;
 }
 
 bool is_known(Version version, Platform platform) {
@@ -119,6 +126,24 @@ std::vector<PlatformLibrary> platform_libraries(Version version,
     libraries.push_back(library_of(version, *it));
   }
   return libraries;
+}
+
+std::vector<ArchiveFile> source_files(Version version) {
+  const std::string given = "--sources";
+  if (version == Version::fmi2)
+    throw InputError(given + ": source code of FMI 2.0 must be C, and this is C++; --fmi 3 has it");
+  const fs::path folder = folder_with(fs::path("sources") / "buildDescription.xml");
+  if (folder.empty())
+    throw InputError(given + ": they are not installed; scripts/build_fmu_platforms collects them");
+  std::vector<fs::path> paths;
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "sources"))
+    if (entry.is_regular_file()) paths.push_back(entry.path());
+  std::sort(paths.begin(), paths.end());
+  std::vector<ArchiveFile> files;
+  for (const fs::path& path : paths)
+    files.push_back(
+        {path.lexically_relative(folder).generic_string(), read_input_file(path, kSource)});
+  return files;
 }
 
 std::string needs_of(const std::vector<PlatformLibrary>& libraries) {

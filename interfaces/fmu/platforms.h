@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "archive.h"
 #include "bentaxis/fmu/unit.h"
 
 namespace bentaxis::fmu {
@@ -20,6 +21,10 @@ struct PlatformLibrary {
 /// version's
 std::vector<PlatformLibrary> platform_libraries(Version version,
                                                 const std::vector<Platform>& platforms);
+
+/// What the library is compiled from: the folder `sources` of the archive, in the order of names.
+/// @throws InputError where it is not installed or the version knows no such sources
+std::vector<ArchiveFile> source_files(Version version);
 
 /// "A and B": what the FMU runs on.
 std::string needs_of(const std::vector<PlatformLibrary>& libraries);

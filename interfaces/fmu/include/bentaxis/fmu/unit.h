@@ -36,11 +36,15 @@ struct UnitOptions {
   /// Outputs in units of the SI, with names that say so ("p_1_Pa"); else as the columns of
   /// `bentaxis simulate` ("p_1_bar").
   bool si_outputs = false;
+  /// Also what the library is compiled from, with buildDescription.xml: of FMI 3, where
+  /// scripts/build_fmu_platforms has collected it.
+  bool sources = false;
 };
 
 /// The bytes of the .fmu: a zip archive with modelDescription.xml, the libraries, the case with its
 /// curves and documentation. The same arguments give the same bytes.
-/// @throws InputError where the case cannot be simulated so, or a platform is not installed
+/// @throws InputError where the case cannot be simulated so, or a platform is not installed, or the
+/// sources are not
 std::string unit_archive(const Case& the_case, const UnitOptions& options);
 
 /// What such an FMU has.
