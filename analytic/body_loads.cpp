@@ -332,7 +332,7 @@ template <class Rows, class LoadsAt>
 BodyLoadTable run_rows(const Case& the_case, const Assumptions& assumptions, const Rows& rows,
                        std::size_t count, const LoadsAt& loads_at, const Progress& progress) {
   BodyLoads loads(validate(the_case).pump, assumptions);
-  BodyLoadTable table;
+  BodyLoadTable table = BodyLoadTable::of(count);
   Instant instant;
   for (std::size_t row = 0; row < count; ++row) {
     rows.instant(row, instant);

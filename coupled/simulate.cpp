@@ -120,6 +120,7 @@ Trajectory tabulate(const std::string& name, Mechanics& mechanics, Oil& oil, con
   const Stopwatch watch;
   Trajectory trajectory;
   trajectory.table = trajectory_table(name, mechanics.layout(), drive);
+  trajectory.loads = BodyLoadTable::of(times.size());
   // A given motion without oil has no states but its balances.
   const bool balances = options.balances || System(mechanics, oil, false).scale().empty();
   HybridIntegrator course(name, mechanics, oil, tolerance, balances);

@@ -90,7 +90,7 @@ ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, con
     }
   }
   std::size_t next = 0;
-  if (loads != nullptr) *loads = {};
+  if (loads != nullptr) *loads = BodyLoadTable::of(samples.theta_deg.size());
   if (budget != nullptr)
     *budget = budget_table("multibody", has_ring_off_b(the_case.pump), model.has_teeth());
   if (teeth != nullptr) {

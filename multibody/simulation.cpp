@@ -61,6 +61,7 @@ Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
   translate_simbody_errors([&] {
     const ChannelLayout layout(the_case.pump);
     trajectory.table = trajectory_table("multibody", layout, *the_case.drive);
+    trajectory.loads = BodyLoadTable::of(trajectory_times(*the_case.drive).size());
     MotionRun run(the_case, assumptions, pressure, integration, method.most_steps,
                   options.body_loads);
     run.run(trajectory, progress);

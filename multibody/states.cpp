@@ -19,7 +19,7 @@ MotionTable run_states(const Case& the_case, const Assumptions& assumptions, con
     *teeth = teeth_table("multibody");
     if (!model.has_teeth()) teeth = nullptr;
   }
-  if (loads != nullptr) *loads = {};
+  if (loads != nullptr) *loads = BodyLoadTable::of(states.rows());
   std::size_t next = 0;
   MotionTable table = tabulate_states(
       "multibody", model.layout(), states,

@@ -118,6 +118,23 @@ TEST(BodySums, OfManyRowsAreTheWorst) {
   EXPECT_TRUE(std::isnan(worst_sums(table)[0].force_over_sum));
 }
 
+TEST(BodyLoadTable, KeepsSomeOfManyRowsAndTheWorstOfAll) {
+  EXPECT_EQ(BodyLoadTable::of(kMaxLoadRows).step, 1);
+  EXPECT_EQ(BodyLoadTable::of(kMaxLoadRows + 1).step, 2);
+  BodyLoadTable table = BodyLoadTable::of(3 * kMaxLoadRows);
+  EXPECT_EQ(table.step, 3);
+  for (int row = 0; row < 10; ++row)
+    table.append({load_on("a", {}, {row == 7 ? 5.0 : 1.0, row * 1.0, 0}),
+                  load_on("a", {0, 1, 0}, {-1, -row * 1.0, 0})});
+  EXPECT_EQ(table.run_rows(), 10);
+  ASSERT_EQ(table.rows(), 4);
+  EXPECT_EQ(table.at(2, 0).force[1], 6);
+  EXPECT_EQ(worst_sums(table)[0].force[0], 4) << "of row 7, which is not kept";
+  const BodyLoadTable by_hand{table.loads, table.values};
+  EXPECT_EQ(by_hand.run_rows(), 4);
+  EXPECT_EQ(worst_sums(by_hand)[0].force_over_sum, 0);
+}
+
 TEST(BodyLoadTable, RefusesARowWithOtherLoads) {
   BodyLoadTable table;
   table.append({load_on("a", {}, {})});

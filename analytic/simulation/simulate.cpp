@@ -130,6 +130,7 @@ class Simulation {
     const std::vector<double> stops =
         options_.times.empty() ? trajectory_times(drive) : options_.times;
     const std::size_t rows = stops.size();
+    trajectory.loads = BodyLoadTable::of(rows);
     next_ = drive.duration * kFirstStep;
     note_piece();
     for (const double knot : equations_.knots()) knots_.push_back(knot);

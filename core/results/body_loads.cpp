@@ -30,14 +30,6 @@ bool same_load(const BodyLoad& a, const BodyLoad& b) {
          a.kind == b.kind;
 }
 
-void BodyLoadTable::append(const std::vector<BodyLoad>& row) {
-  if (loads.empty()) loads = row;
-  if (!std::equal(row.begin(), row.end(), loads.begin(), loads.end(), same_load))
-    throw ComputationError("loads on bodies: row " + std::to_string(rows() + 1) +
-                           " has other loads than the first one");
-  for (const BodyLoad& load : row) values.push_back({load.at, load.force, load.moment});
-}
-
 std::vector<BodyLoad> BodyLoadTable::row(std::size_t row) const {
   std::vector<BodyLoad> result = loads;
   for (std::size_t i = 0; i < result.size(); ++i) {
@@ -49,24 +41,18 @@ std::vector<BodyLoad> BodyLoadTable::row(std::size_t row) const {
   return result;
 }
 
-namespace {
-
-// Sums of loads that are read by an index, so that rows of a table need no names of their own.
-template <class Numbers>
-void sum_up(const std::vector<BodyLoad>& names, const Numbers& numbers,
-            std::vector<BodySum>& sums) {
-  sums.clear();
+std::vector<BodySum> sums_of(const std::vector<BodyLoad>& loads) {
   struct Scale {
     Vector about;
     double force = 0, moment = 0;
   };
+  std::vector<BodySum> sums;
   std::vector<Scale> scales;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto& load = numbers(i);
+  for (const BodyLoad& load : loads) {
     auto sum = std::find_if(sums.begin(), sums.end(),
-                            [&](const BodySum& known) { return known.body == names[i].on; });
+                            [&](const BodySum& known) { return known.body == load.on; });
     if (sum == sums.end()) {
-      sums.push_back({names[i].on});
+      sums.push_back({load.on});
       scales.push_back({load.at});
       sum = sums.end() - 1;
     }
@@ -82,37 +68,42 @@ void sum_up(const std::vector<BodyLoad>& names, const Numbers& numbers,
     sums[i].force_over_sum = over(norm(sums[i].force), scales[i].force);
     sums[i].moment_over_sum = over(norm(sums[i].moment), scales[i].moment);
   }
+  return sums;
+}
+
+namespace {
+
+void keep_worst(const std::vector<BodySum>& sums, std::vector<BodySum>& worst) {
+  if (worst.empty()) worst = sums;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    if (beyond(sums[i].force_over_sum, worst[i].force_over_sum)) {
+      worst[i].force_over_sum = sums[i].force_over_sum;
+      worst[i].force = sums[i].force;
+    }
+    if (beyond(sums[i].moment_over_sum, worst[i].moment_over_sum)) {
+      worst[i].moment_over_sum = sums[i].moment_over_sum;
+      worst[i].moment = sums[i].moment;
+    }
+  }
 }
 
 }  // namespace
 
-std::vector<BodySum> sums_of(const std::vector<BodyLoad>& loads) {
-  std::vector<BodySum> sums;
-  sum_up(
-      loads, [&](std::size_t i) -> const BodyLoad& { return loads[i]; }, sums);
-  return sums;
+std::vector<BodySum> worst_sums(const BodyLoadTable& table) {
+  if (table.appended > 0) return table.worst;
+  std::vector<BodySum> worst;
+  for (std::size_t row = 0; row < table.rows(); ++row) keep_worst(sums_of(table.row(row)), worst);
+  return worst;
 }
 
-std::vector<BodySum> worst_sums(const BodyLoadTable& table) {
-  std::vector<BodySum> worst;
-  std::vector<BodySum> sums;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    sum_up(
-        table.loads, [&](std::size_t i) -> const BodyLoadTable::Row& { return table.at(row, i); },
-        sums);
-    if (row == 0) worst = sums;
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-      if (beyond(sums[i].force_over_sum, worst[i].force_over_sum)) {
-        worst[i].force_over_sum = sums[i].force_over_sum;
-        worst[i].force = sums[i].force;
-      }
-      if (beyond(sums[i].moment_over_sum, worst[i].moment_over_sum)) {
-        worst[i].moment_over_sum = sums[i].moment_over_sum;
-        worst[i].moment = sums[i].moment;
-      }
-    }
-  }
-  return worst;
+void BodyLoadTable::append(const std::vector<BodyLoad>& row) {
+  if (loads.empty()) loads = row;
+  if (!std::equal(row.begin(), row.end(), loads.begin(), loads.end(), same_load))
+    throw ComputationError("loads on bodies: row " + std::to_string(appended + 1) +
+                           " has other loads than the first one");
+  keep_worst(sums_of(row), worst);
+  if (appended++ % step != 0) return;
+  for (const BodyLoad& load : row) values.push_back({load.at, load.force, load.moment});
 }
 
 }  // namespace bentaxis

@@ -152,7 +152,7 @@ std::vector<Figure> force_figures(const DiagramRun& run) {
   const auto has = [&](std::size_t channel) { return any_computed(column(run, channel)); };
   std::vector<Figure> figures;
   if (run.table.rows() < 2) return figures;
-  if (run.loads != nullptr && run.loads->rows() == run.table.rows()) {
+  if (run.loads != nullptr && run.loads->run_rows() == run.table.rows()) {
     figures.push_back(force_polygon(run, "piston 1", {{2, 0}, {2, 1}, {0, 1}}, 280));
     figures.push_back(force_polygon(run, "block", {{2, 1}, {0, 1}}, 280));
   }

@@ -67,7 +67,7 @@ std::vector<Family> families_of(const BodyLoadTable& table, const std::string& b
   return families;
 }
 
-// The polygon at a row: of each family its reactions one after the other, or all else as one.
+// The polygon at a row whose loads are kept: of each family its reactions one after the other, or all else as one.
 struct Polygon {
   std::vector<std::vector<Force>> forces;  // by family
   double open = 0;                         // of the sum of magnitudes
@@ -81,7 +81,7 @@ Polygon polygon_at(const DiagramRun& run, const std::vector<Family>& families,
     polygon.forces.emplace_back();
     Force sum = {};
     for (const std::size_t load : family.loads) {
-      const auto& f = run.loads->at(row, load).force;
+      const auto& f = run.loads->at(row / run.loads->step, load).force;
       const Force turned = {f[0], std::cos(tilt) * f[1] - std::sin(tilt) * f[2],
                             std::sin(tilt) * f[1] + std::cos(tilt) * f[2]};
       if (family.kind == ForceKind::reaction) polygon.forces.back().push_back(turned);
@@ -89,7 +89,7 @@ Polygon polygon_at(const DiagramRun& run, const std::vector<Family>& families,
     }
     if (family.kind != ForceKind::reaction) polygon.forces.back().push_back(sum);
   }
-  for (const BodySum& sum : sums_of(run.loads->row(row)))
+  for (const BodySum& sum : sums_of(run.loads->row(row / run.loads->step)))
     if (sum.body == body) polygon.open = sum.force_over_sum;
   return polygon;
 }
@@ -147,7 +147,8 @@ report::Figure force_polygon(const DiagramRun& run, const std::string& body,
   DrawingFigure drawing;
   for (std::size_t f = 0; f < families.size(); ++f)
     drawing.looks.push_back({families[f].label, static_cast<int>(f), false});
-  const std::vector<std::size_t> rows = frame_rows(run.table.rows(), kMaxFrames);
+  std::vector<std::size_t> rows = frame_rows(run.loads->rows(), kMaxFrames);
+  for (std::size_t& row : rows) row *= run.loads->step;
   std::vector<Polygon> polygons;
   for (const std::size_t row : rows) polygons.push_back(polygon_at(run, families, body, row));
   for (const auto& plane : planes) drawing.panels.push_back(panel_of(plane, polygons));

@@ -480,7 +480,7 @@ std::optional<report::Scene> scene_of(const SimulationResult& r) {
   std::vector<SceneRun> shown;
   SceneMotion motion;
   for (const auto& [name, run] : runs_of(r)) {
-    if (run->loads.rows() != run->lag.size()) return std::nullopt;
+    if (run->loads.run_rows() != run->lag.size()) return std::nullopt;
     shown.push_back({run->table.results, run->loads});
   }
   const Trajectory& first = *runs_of(r).front().second;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <deque>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -472,9 +473,12 @@ ResultTable every(std::size_t step, const ResultTable& table) {
   return thin;
 }
 
+// @param step  of the run's rows, a multiple of that of the table
 BodyLoadTable every(std::size_t step, const BodyLoadTable& table) {
-  BodyLoadTable thin{table.loads, {}};
-  for (std::size_t row = 0; row < table.rows(); row += step)
+  BodyLoadTable thin;
+  thin.loads = table.loads;
+  thin.step = step;
+  for (std::size_t row = 0; row < table.rows(); row += step / table.step)
     for (std::size_t load = 0; load < table.loads.size(); ++load)
       thin.values.push_back(table.at(row, load));
   return thin;
@@ -519,13 +523,14 @@ report::Scene pump_scene(const Case& the_case, const std::vector<SceneRun>& runs
                          const SceneMotion* motion, const ResultTable* path) {
   const std::size_t rows = runs.at(0).table.rows();
   for (const SceneRun& run : runs)
-    if (run.table.rows() != rows || run.loads.rows() != rows)
+    if (run.table.rows() != rows || run.loads.run_rows() != rows)
       throw ComputationError("the pump in space: runs of different rows");
   std::vector<report::SceneSum> sums = sums_of(runs);
   const auto add_film_path = [&](report::Scene& scene) {
     if (path != nullptr) scene.film_path = film_path(the_case.pump, *path);
   };
-  const std::size_t step = (rows + kMaxSceneRows - 1) / kMaxSceneRows;
+  std::size_t step = (rows + kMaxSceneRows - 1) / kMaxSceneRows;
+  for (const SceneRun& run : runs) step = std::lcm(step, run.loads.step);
   if (step <= 1) {
     report::Scene scene = SceneMaker(the_case, runs).scene(motion);
     scene.sums = std::move(sums);

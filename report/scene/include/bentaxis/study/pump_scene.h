@@ -25,7 +25,7 @@ struct SceneMotion {
 };
 
 /// Of more rows than this a scene shows every second, third, .. with curves of its own.
-inline constexpr std::size_t kMaxSceneRows = 1440;
+inline constexpr std::size_t kMaxSceneRows = kMaxLoadRows;
 inline constexpr std::size_t kMostSceneRows [[deprecated("use kMaxSceneRows")]] = kMaxSceneRows;
 
 /// @param runs    as many rows each as the curves that the scene is shown with, whose tables have
