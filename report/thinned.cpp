@@ -24,16 +24,48 @@ void add_extremes(const Columns& columns, std::set<std::size_t>& rows) {
   }
 }
 
-// Only of what has a value at every row.
-void keep(Values& values, std::size_t all, const std::vector<std::size_t>& rows) {
-  if (values.size() != all) return;
-  for (std::size_t i = 0; i < rows.size(); ++i) values[i] = values[rows[i]];
-  values.resize(rows.size());
-}
+// Some rows of what has a value at every row; all of anything else.
+class Kept {
+ public:
+  Kept(std::size_t all, const std::vector<std::size_t>& rows) : all_(all), rows_(rows) {}
 
-void keep(Columns& columns, std::size_t all, const std::vector<std::size_t>& rows) {
-  for (auto& [name, values] : columns) keep(values, all, rows);
-}
+  Values operator()(const Values& values) const {
+    if (values.size() != all_) return values;
+    Values some;
+    some.reserve(rows_.size());
+    for (const std::size_t row : rows_) some.push_back(values[row]);
+    return some;
+  }
+  Columns operator()(const Columns& columns) const {
+    Columns some;
+    for (const auto& [name, values] : columns) some.emplace_back(name, (*this)(values));
+    return some;
+  }
+  Curves::Reference operator()(const Curves::Reference& reference) const {
+    Curves::Reference some{reference.name, {}};
+    for (const Curves::Held& held : reference.held)
+      some.held.push_back({held.channel, (*this)(held.values), held.allowed, (*this)(held.low),
+                           (*this)(held.high), (*this)(held.differences)});
+    return some;
+  }
+  // Without a copy of all rows, which may be most of the memory.
+  Curves operator()(const Curves& curves) const {
+    Curves some;
+    some.theta_deg = (*this)(curves.theta_deg);
+    for (const Curves::Table& table : curves.tables)
+      some.tables.push_back({table.name, (*this)(table.columns)});
+    some.difference = (*this)(curves.difference);
+    if (curves.reference) some.reference = (*this)(*curves.reference);
+    some.axis = curves.axis;
+    some.marks = curves.marks;
+    some.samples = all_;
+    return some;
+  }
+
+ private:
+  std::size_t all_;
+  const std::vector<std::size_t>& rows_;
+};
 
 }  // namespace
 
@@ -51,28 +83,16 @@ std::vector<std::size_t> rows_shown(const Curves& curves, std::size_t most) {
 
 Thinned thinned(const Document& document, const Curves& curves,
                 const std::vector<std::size_t>& rows) {
-  const std::size_t all = curves.theta_deg.size();
-  Thinned result{document, curves};
-  Curves& of_page = result.curves;
-  of_page.samples = all;
-  keep(of_page.theta_deg, all, rows);
-  for (Curves::Table& table : of_page.tables) keep(table.columns, all, rows);
-  keep(of_page.difference, all, rows);
-  if (of_page.reference)
-    for (Curves::Held& held : of_page.reference->held) {
-      keep(held.values, all, rows);
-      keep(held.low, all, rows);
-      keep(held.high, all, rows);
-      keep(held.differences, all, rows);
-    }
+  const Kept kept(curves.theta_deg.size(), rows);
+  Thinned result{document, kept(curves)};
   if (result.document.figures)
     for (Figure& figure : *result.document.figures)
       if (auto* const channels = std::get_if<ChannelFigure>(&figure.content);
           channels != nullptr && !channels->curves)
-        for (Series& series : channels->extra) keep(series.values, all, rows);
+        for (Series& series : channels->extra) series.values = kept(series.values);
   if (result.document.scene && !result.document.scene->curves) {
     Scene& scene = *result.document.scene;
-    for (Values& series : scene.series) keep(series, all, rows);
+    for (Values& series : scene.series) series = kept(series);
     scene.rows = rows.size();
   }
   return result;

@@ -498,39 +498,75 @@ bool is_written(const ResultTable& table, std::size_t column) {
   return false;
 }
 
+// A text that is handed on whenever enough of it has come together.
+class Pieces {
+ public:
+  explicit Pieces(const TextSink& write) : write_(write) {}
+  std::string& next() {
+    constexpr std::size_t kEnough = 1 << 20;
+    if (piece.size() >= kEnough) end();
+    return piece;
+  }
+  void end() {
+    write_(piece);
+    piece.clear();
+  }
+  std::string piece;
+
+ private:
+  const TextSink& write_;
+};
+
+template <class Writes>
+std::string text_of(const Writes& writes) {
+  std::string text;
+  writes([&](const std::string& piece) { text += piece; });
+  return text;
+}
+
 }  // namespace
 
 std::string to_csv(const MotionTable& table) {
+  return text_of([&](const TextSink& write) { write_csv(table, write); });
+}
+
+void write_csv(const MotionTable& table, const TextSink& write) {
   const ResultTable& results = table.results;
-  std::string text;
+  Pieces text(write);
   std::vector<std::size_t> columns;  // those that the states do not have already: given pressures
   const auto& names = table.state_names;
-  for (const std::string& name : names) text += name + ",";
+  for (const std::string& name : names) text.piece += name + ",";
   for (std::size_t c = 0; c < results.columns(); ++c)
     if (is_written(results, c) &&
         std::find(names.begin(), names.end(), results.channels[c].name) == names.end()) {
       columns.push_back(c);
-      text += results.channels[c].name + ",";
+      text.piece += results.channels[c].name + ",";
     }
-  text.back() = '\n';
+  text.piece.back() = '\n';
   std::vector<double> line;
   for (std::size_t row = 0; row < results.rows(); ++row) {
     line.clear();
     for (std::size_t c = 0; c < names.size(); ++c) line.push_back(table.state(row, c));
     for (const std::size_t c : columns) line.push_back(results.at(row, c));
-    append_csv_row(text, line[0], line.data() + 1, line.size() - 1);
+    append_csv_row(text.next(), line[0], line.data() + 1, line.size() - 1);
   }
-  return text;
+  text.end();
 }
 
 std::string oil_csv(const Trajectory& run) {
-  std::string text = "time_s";
-  for (const OilColumn& column : run.oil->columns) text += "," + column.name;
-  text += "\n";
+  return text_of([&](const TextSink& write) { write_oil_csv(run, write); });
+}
+
+void write_oil_csv(const Trajectory& run, const TextSink& write) {
+  Pieces text(write);
+  text.piece = "time_s";
+  for (const OilColumn& column : run.oil->columns) text.piece += "," + column.name;
+  text.piece += "\n";
   const std::size_t columns = run.oil->columns.size();
   for (std::size_t row = 0; row < run.lag.size(); ++row)
-    append_csv_row(text, run.table.state(row, 0), run.oil->values.data() + row * columns, columns);
-  return text;
+    append_csv_row(text.next(), run.table.state(row, 0), run.oil->values.data() + row * columns,
+                   columns);
+  text.end();
 }
 
 std::string csv_header(const std::vector<Channel>& channels) {
@@ -549,20 +585,26 @@ void append_csv_row(std::string& text, double theta_deg, const double* values, s
 }
 
 std::string to_csv(const ResultTable& table) {
+  return text_of([&](const TextSink& write) { write_csv(table, write); });
+}
+
+void write_csv(const ResultTable& table, const TextSink& write,
+               const std::function<bool(const Channel&)>& wanted) {
   std::vector<Channel> channels;
   std::vector<std::size_t> columns;
   for (std::size_t c = 0; c < table.columns(); ++c)
-    if (is_written(table, c)) {
+    if ((!wanted || wanted(table.channels[c])) && is_written(table, c)) {
       columns.push_back(c);
       channels.push_back(table.channels[c]);
     }
-  std::string text = csv_header(channels);
+  Pieces text(write);
+  text.piece = csv_header(channels);
   std::vector<double> line(columns.size());
   for (std::size_t row = 0; row < table.rows(); ++row) {
     for (std::size_t i = 0; i < columns.size(); ++i) line[i] = table.at(row, columns[i]);
-    append_csv_row(text, table.theta_deg[row], line.data(), line.size());
+    append_csv_row(text.next(), table.theta_deg[row], line.data(), line.size());
   }
-  return text;
+  text.end();
 }
 
 }  // namespace bentaxis

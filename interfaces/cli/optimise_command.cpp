@@ -105,7 +105,7 @@ int optimise(const OptimiseOptions& options, const CommandParser& command, const
                    found.kept_singles > 0
                        ? (" and " + std::to_string(found.kept_singles) + " single designs").c_str()
                        : "");
-    std::vector<TextFile> files = designs::chosen_cases(found);
+    std::vector<TextFile> files = text_files(designs::chosen_cases(found));
     files.emplace_back("front.csv", designs::front_csv(found));
     files.emplace_back("evaluations.csv", designs::evaluations_csv(found));
     const auto paths = folders->write(

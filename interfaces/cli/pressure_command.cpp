@@ -111,7 +111,7 @@ int pressure(const PressureOptions& options) {
   if (published) study::add_published(document, study::judge_point(*published, point, progress_of));
   if (second)
     study::add_overlay(document, point, study::run_point(std::move(*second), progress_of));
-  std::vector<TextFile> curves = study::pressure_csv(point, power);
+  std::vector<TextFile> curves = text_files(study::pressure_csv(point, power));
   std::optional<study::DisplacementStudy> displacement;
   if (test) {
     displacement = study::displacement_study(point.the_case(), test->speeds, test->pressures,

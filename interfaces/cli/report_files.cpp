@@ -47,6 +47,12 @@ void add_accuracy(report::Document& document) {
 
 }  // namespace
 
+std::vector<TextFile> text_files(std::vector<std::pair<std::string, std::string>> files) {
+  std::vector<TextFile> all;
+  for (auto& file : files) all.emplace_back(std::move(file));
+  return all;
+}
+
 ReportFolders::ReportFolders(const ReportPlace& place) : report_(place.out) {
   if (!place.figures.empty()) figures_.emplace(place.figures);
 }
@@ -59,10 +65,14 @@ std::vector<std::filesystem::path> ReportFolders::write(const std::string& name,
   add_accuracy(document);
   document.files = report_.names();
   document.files.insert(document.files.begin(), name + ".html");
-  for (const auto& [file, content] : further) document.files.push_back(file);
+  for (const TextFile& file : further) document.files.push_back(file.name);
   document.files.push_back(name + ".json");
   report_.add(name + ".html", report::render_page(document, curves));
-  for (const auto& [file, content] : further) report_.add(file, content);
+  for (const TextFile& file : further) {
+    OutputFolder::Stream& stream = report_.open(file.name);
+    file.write([&](const std::string& piece) { stream.write(piece); });
+    stream.finish();
+  }
   report_.add(name + ".json", report::json_text(document));  // last: it is the record of the set
   if (figures_) add_figure_files(*figures_, document, curves);
   auto paths = report_.commit(name + ".json", report::files_of);

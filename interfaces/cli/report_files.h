@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "bentaxis/files/csv.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/report/document.h"
 
@@ -14,8 +16,22 @@ namespace bentaxis::cli {
 
 class CommandParser;
 
-/// Name and content.
-using TextFile = std::pair<std::string, std::string>;
+/// A file of a report: its text, or what writes it piece by piece when its turn has come.
+struct TextFile {
+  using Write = std::function<void(const TextSink&)>;
+
+  TextFile(std::string file, std::string text)
+      : name(std::move(file)),
+        write([text = std::move(text)](const TextSink& sink) { sink(text); }) {}
+  TextFile(std::string file, Write writes) : name(std::move(file)), write(std::move(writes)) {}
+  explicit TextFile(std::pair<std::string, std::string> file)
+      : TextFile(std::move(file.first), std::move(file.second)) {}
+
+  std::string name;
+  Write write;
+};
+/// Of files as pairs of name and text.
+std::vector<TextFile> text_files(std::vector<std::pair<std::string, std::string>> files);
 
 /// Where a report goes.
 struct ReportPlace {

@@ -6,23 +6,34 @@
 #include "bentaxis/files/csv.h"
 
 namespace bentaxis::cli {
+namespace {
+
+// Of tables that are there until the files are written.
+template <class Table>
+TextFile csv_file(std::string name, const Table& table) {
+  return {std::move(name), [&table](const TextSink& write) { write_csv(table, write); }};
+}
+
+}  // namespace
 
 std::vector<TextFile> comparison_files(const study::ComparisonResult& result) {
-  const auto wanted = [&](const Channel& channel) {
-    return result.options.channels.wants(channel);
+  const auto chosen = [&](const char* name, const ResultTable& table) {
+    return TextFile(name, [&](const TextSink& write) {
+      write_csv(table, write,
+                [&](const Channel& channel) { return result.options.channels.wants(channel); });
+    });
   };
-  std::vector<TextFile> curves = {
-      {"analytic.csv", to_csv(select_channels(result.analytic, wanted))},
-      {"multibody.csv", to_csv(select_channels(result.multibody, wanted))}};
+  std::vector<TextFile> curves = {chosen("analytic.csv", result.analytic),
+                                  chosen("multibody.csv", result.multibody)};
   if (result.first.hydraulics)
-    curves.emplace_back("pressure.csv", to_csv(result.first.hydraulics->table));
+    curves.push_back(csv_file("pressure.csv", result.first.hydraulics->table));
   if (result.budget) {
-    curves.emplace_back("budget_analytic.csv", to_csv(result.budget->analytic));
-    curves.emplace_back("budget_multibody.csv", to_csv(result.budget->multibody));
+    curves.push_back(csv_file("budget_analytic.csv", result.budget->analytic));
+    curves.push_back(csv_file("budget_multibody.csv", result.budget->multibody));
   }
   if (result.teeth) {
-    curves.emplace_back("teeth_analytic.csv", to_csv(result.teeth->analytic));
-    curves.emplace_back("teeth_multibody.csv", to_csv(result.teeth->multibody));
+    curves.push_back(csv_file("teeth_analytic.csv", result.teeth->analytic));
+    curves.push_back(csv_file("teeth_multibody.csv", result.teeth->multibody));
   }
   if (result.engines)
     for (TextFile& file : engine_files(*result.engines)) curves.push_back(std::move(file));
@@ -32,7 +43,7 @@ std::vector<TextFile> comparison_files(const study::ComparisonResult& result) {
 std::vector<TextFile> engine_files(const study::EngineComparison& engines) {
   std::vector<TextFile> curves;
   for (const study::EngineRun& run : engines.runs)
-    if (run.failure.empty()) curves.emplace_back(run.name + ".csv", to_csv(run.table));
+    if (run.failure.empty()) curves.push_back(csv_file(run.name + ".csv", run.table));
   return curves;
 }
 
@@ -41,11 +52,14 @@ std::vector<TextFile> simulation_files(const study::SimulationResult& result) {
   for (const auto& [name, run] :
        {std::pair{"analytic", &result.analytic}, std::pair{"multibody", &result.multibody}}) {
     if (!*run) continue;
-    curves.emplace_back(std::string("simulation_") + name + ".csv", to_csv((*run)->table));
-    if (!(*run)->teeth.empty())
+    const Trajectory& of = **run;
+    curves.push_back(csv_file(std::string("simulation_") + name + ".csv", of.table));
+    if (!of.teeth.empty())
       curves.emplace_back(std::string("teeth_") + name + ".csv",
-                          to_csv(teeth_table_of(**run, result.ready.the_case.pump.gear)));
-    if ((*run)->oil) curves.emplace_back(std::string("oil_") + name + ".csv", oil_csv(**run));
+                          to_csv(teeth_table_of(of, result.ready.the_case.pump.gear)));
+    if (of.oil)
+      curves.emplace_back(std::string("oil_") + name + ".csv",
+                          [&of](const TextSink& write) { write_oil_csv(of, write); });
     if (const auto& told = result.exchanged[run == &result.multibody]; told)
       curves.emplace_back(std::string("unit_") + name + ".csv", told->csv());
   }

@@ -126,7 +126,7 @@ PythonCase case_of(const Optimisation& self, std::size_t design) {
 
 std::vector<fs::path> report_optimisation(const Optimisation& self, const fs::path& folder) {
   const designs::Optimisation& found = *self.found;
-  std::vector<cli::TextFile> files = designs::chosen_cases(found);
+  std::vector<cli::TextFile> files = cli::text_files(designs::chosen_cases(found));
   files.emplace_back("front.csv", designs::front_csv(found));
   files.emplace_back("evaluations.csv", designs::evaluations_csv(found));
   return unlocked([&](const study::PartProgress& progress_of) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -85,15 +86,23 @@ States read_states(const std::filesystem::path& file, const Case& the_case,
 States states_of(const NumericTable& table, const std::filesystem::path& file,
                  const std::string& head, const Case& the_case, const PressureTrace& pressure);
 
+/// Where a long text goes, piece by piece.
+using TextSink = std::function<void(const std::string& piece)>;
+
 /// A table along a motion as CSV text: its states, then its channels.
 std::string to_csv(const MotionTable& table);
+void write_csv(const MotionTable& table, const TextSink& write);
 
 /// What the oil of a simulation does: time_s, then its columns.
 std::string oil_csv(const Trajectory& run);
+void write_oil_csv(const Trajectory& run, const TextSink& write);
 
 /// The table as CSV text: theta_deg, then one column per channel; shortest text that reads back to
 /// the same double; not computed = empty.
 std::string to_csv(const ResultTable& table);
+/// @param wanted  which of its channels; empty: all
+void write_csv(const ResultTable& table, const TextSink& write,
+               const std::function<bool(const Channel&)>& wanted = {});
 
 /// Its parts: the header line, and one line of numbers.
 std::string csv_header(const std::vector<Channel>& channels);

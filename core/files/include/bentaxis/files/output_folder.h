@@ -39,6 +39,8 @@ class OutputFolder {
     void write(const std::string& piece);
     /// Says how large it will be. @throws InputError where the disk has no room for that
     void expect(double bytes) const;
+    /// It is complete. Also at commit(). @throws InputError
+    void finish();
 
    private:
     friend class OutputFolder;
@@ -47,7 +49,6 @@ class OutputFolder {
     };
     std::unique_ptr<std::FILE, Closer> file_;
     std::filesystem::path shown_;
-    void finish();
   };
   /// Opens such a file; it is complete at commit(). @throws InputError
   Stream& open(const std::string& name);
