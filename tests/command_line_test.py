@@ -992,6 +992,55 @@ class OutputTest(ProgramTest):
         self.assertRegex(done.stderr, r"^bentaxis: [^\n]*reference\.csv[^\n]*\n$")
 
 
+class LargeRunTest(ProgramTest):
+    """Many rows: files have them all, the page some of them, and memory grows by what the tables need."""
+
+    ROWS = 12_000  # more than there are beside which nothing runs (studies/verification/comparison.cpp)
+    BYTES_OF_A_ROW = 10_000  # two tables of 78 numbers, curves, budgets: 4 200 were measured
+
+    def memory_of(self, *arguments):
+        """Largest resident memory of a run that succeeds, bytes."""
+        process = self.start(*arguments)
+        self.addCleanup(process.kill)
+        _, status, used = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        process.communicate()
+        self.assertEqual(process.returncode, DONE)
+        return used.ru_maxrss * 1024
+
+    def page_of(self, folder):
+        page = (self.folder / folder / "report.html").read_text()
+        found = {name: json.loads(text) for name, text in
+                 re.findall(r'<script type="application/json" id="(report|scene)">(.*?)</script>', page, re.DOTALL)}
+        self.assertIn("scene", found)
+        self.assertIn("polygon_piston", [figure["id"] for figure in found["report"]["figures"]])
+        return page, found["scene"]
+
+    def test_comparison(self):
+        few, many = (self.case(f"{rows}.toml", **{"operation.samples_per_revolution": rows}) for rows in (720, self.ROWS))
+        small = self.memory_of("compare", few, "--out", "few")
+        large = self.memory_of("compare", many, "--out", "many")
+        self.assertLess(large - small, self.ROWS * self.BYTES_OF_A_ROW)
+        self.run_program("run", many, "--model", "analytic", "--out", "run")
+        self.assertEqual((self.folder / "many/analytic.csv").read_bytes(), (self.folder / "run/analytic.csv").read_bytes())
+        self.assertEqual((self.folder / "many/multibody.csv").read_text().count("\n"), self.ROWS + 1)
+        page, scene = self.page_of("many")
+        self.assertLess(len(page), 20_000_000)
+        self.assertEqual(scene["rows"], -(-self.ROWS // -(-self.ROWS // 1440)))
+        self.assertIn("one of 9 rows", scene["note"])
+
+    def test_simulation(self):
+        case = str(REPO / "cases/bap63_rated.toml")
+        drive = ["--set", "drive.kind=speed", "--set", "drive.duration_s=0.04"]
+        rows = self.ROWS
+        small = self.memory_of("simulate", case, *drive, "--set", "drive.samples=720", "--out", "few")
+        large = self.memory_of("simulate", case, *drive, "--set", f"drive.samples={rows}", "--out", "many")
+        self.assertLess(large - small, rows * self.BYTES_OF_A_ROW)
+        self.assertEqual((self.folder / "many/simulation_multibody.csv").read_text().count("\n"), rows + 2)
+        page, _ = self.page_of("many")
+        self.assertLess(len(page), 20_000_000)
+
+
 class InterruptionTest(ProgramTest):
     def long_case(self):
         return self.case("long.toml", **{"operation.samples_per_revolution": 200000})

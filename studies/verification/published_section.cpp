@@ -75,6 +75,8 @@ compare::PublishedRun VariantRuns::operator()(const compare::PublishedVariant& v
   if (variant.set.empty()) return run;
   ResultTable& table = tables_[variant.name];
   if (table.rows() == 0) {
+    int& samples = the_case.operation.samples_per_revolution;
+    samples = std::min(samples, kMaxVariantSamples);
     PressureTrace pressure(the_case.pressure);
     const PreparedCase ready{std::move(the_case), {}, std::move(pressure)};
     table = study::run(ready, options, progress_of_).table;

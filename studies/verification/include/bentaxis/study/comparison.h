@@ -83,7 +83,8 @@ struct ComparisonResult {
   std::optional<compare::Split> split;       ///< then: the difference taken apart
   std::vector<IntegrationRow> integrations;  ///< integrated: one per accuracy, the last is compared
   std::string choice;                        ///< integrated to an error: what was chosen
-  std::vector<ResultTable> without_viscous;  ///< both models with Cc = 0 (Fig. 32), where it is not
+  std::vector<ResultTable>
+      without_viscous;  ///< Rcs and Tcs of both models with Cc = 0 (Fig. 32), where it is not
   std::vector<analytic::ValidityLimit> limits;
   std::vector<RoundingLine> rounding;
   MultibodyLosses losses;  ///< of a driven run

@@ -42,6 +42,9 @@ struct PublishedInput {
   const ResultTable* table;
 };
 
+/// Angles of a turn at which a variant is run, at most: printed numbers have three digits.
+inline constexpr int kMaxVariantSamples = 1440;
+
 /// One model under the variants of a publication, driven, each run once.
 class VariantRuns {
  public:
