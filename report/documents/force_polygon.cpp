@@ -67,7 +67,8 @@ std::vector<Family> families_of(const BodyLoadTable& table, const std::string& b
   return families;
 }
 
-// The polygon at a row whose loads are kept: of each family its reactions one after the other, or all else as one.
+// The polygon at a row whose loads are kept: of each family its reactions one after the other, or
+// all else as one.
 struct Polygon {
   std::vector<std::vector<Force>> forces;  // by family
   double open = 0;                         // of the sum of magnitudes
