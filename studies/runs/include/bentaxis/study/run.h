@@ -90,6 +90,7 @@ enum class Kept {
   shown,      ///< one model's with all loads, figures and the page
   compared,   ///< both models' with figures and the page
   simulated,  ///< one model's in time, with figures and the page
+  studied,    ///< both models' at several speeds and with pistons of both kinds
 };
 /// @throws InputError where the samples of the case do not fit into the memory that is available
 void require_memory(const Case& the_case, Kept kept, Way way);
