@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bentaxis/analytic/body_loads.h"
+#include "bentaxis/analytic/constant_speed.h"
 #include "bentaxis/analytic/budget.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/files/csv.h"
