@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "bentaxis/analytic/body_loads.h"
-#include "bentaxis/analytic/constant_speed.h"
 #include "bentaxis/analytic/budget.h"
+#include "bentaxis/analytic/constant_speed.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/multibody/model.h"
