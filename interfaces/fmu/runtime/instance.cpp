@@ -242,9 +242,8 @@ Status Instance::step(double time, double size) {
 }
 
 void Instance::step_whole(double end) {
-  const double before = plant_->time();
   plant_->step(end - start_time_);
-  advance(inputs_, plant_->time() - before);
+  inputs_ = plant_->inputs();
   note_events();
   now_ = end;
 }
@@ -255,13 +254,11 @@ void Instance::step_by_step(double start, double end) {
   // What is set starts the integrator anew: each update may not.
   constexpr double kLeastShareBetweenSettings = 0.05;
   const PlantState before = plant_->state();
-  const Inputs inputs = inputs_;
   double stop = end - start_time_, set_at = plant_->time();
   try {
     while (plant_->time() < stop && !(at_event_ && stepping_.early_return)) {
-      const double was = plant_->time();
       plant_->step_towards(stop);
-      advance(inputs_, plant_->time() - was);
+      inputs_ = plant_->inputs();
       note_events();
       now_ = plant_->time() == end - start_time_ ? end : start_time_ + plant_->time();
       if (!stepping_.update) continue;
@@ -271,7 +268,7 @@ void Instance::step_by_step(double start, double end) {
     }
   } catch (const ComputationError&) {
     plant_->set_state(before);
-    inputs_ = inputs;
+    inputs_ = plant_->inputs();
     inputs_changed_ = at_event_ = false;
     now_ = start;
     throw;
