@@ -30,7 +30,7 @@ std::optional<double> along(const std::optional<double>& value, double rate, dou
 
 }  // namespace
 
-bool Surroundings::is_constant() const {
+bool Surroundings::oil_is_held() const {
   return suction_rate == 0 && delivery_rate == 0 && load_share_rate == 0;
 }
 
