@@ -402,18 +402,22 @@ void Maker::run_all() {
     return;
   }
   struct Stopped {};
-  std::atomic<bool> stopped = false;
+  std::atomic<bool> first_done = false, stopped = false;
   std::exception_ptr failure;  // of the second job: told where the first has none
   numerics::parallel_for(2, 2, [&](std::size_t job) {
     try {
-      if (job == 0)
+      if (job == 0) {
         run_models();
-      else
-        run_without_viscous([&](const std::string&) {
-          return Progress([&](double) {
-            if (stopped) throw Stopped();
-          });
+        first_done = true;
+        return;
+      }
+      // One of them tells how far it is: the first, then this one.
+      run_without_viscous([&](const std::string& part) {
+        return Progress([&, told = progress_of_(part)](double fraction) {
+          if (stopped) throw Stopped();
+          if (first_done) told(fraction);
         });
+      });
     } catch (const Stopped&) {
     } catch (...) {
       if (job == 0) {
