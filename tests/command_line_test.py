@@ -1177,6 +1177,11 @@ class MemoryTest(ProgramTest):
                                        rf"available; lower {re.escape(key)}")
         result = self.run_program("show", rated, "--out", "out", status=BAD_INPUT, preexec_fn=lambda: limit_memory(little))
         self.assert_mentions(result.err, "samples_per_revolution = 200000: ", "GB of memory are needed")
+        # A series is as many runs.
+        fits = self.case("fits.toml", **{"operation.samples_per_revolution": 20000})
+        result = self.run_program("inertia", fits, "--speeds", "500,1000,1500,2000,2500,3000", "--out", "out", status=BAD_INPUT,
+                                  preexec_fn=lambda: limit_memory(more))
+        self.assert_mentions(result.err, "samples_per_revolution = 20000: ", "GB of memory are needed")
         # Row by row, and few of them, it fits.
         self.run_program("run", rated, "--model", "analytic", "--out", "out", preexec_fn=lambda: limit_memory(1.2e9))
         self.run_program("compare", self.case("few.toml"), "--out", "out", preexec_fn=lambda: limit_memory(1.2e9))

@@ -74,7 +74,8 @@ bool InertiaStudy::agrees() const {
 
 InertiaStudy run_inertia_study(const Case& as_read, const InertiaOptions& options,
                                const PartProgress& progress_of) {
-  require_memory(as_read, Kept::studied, Way::driven);
+  // Of each speed both pistons by both models in two scenes, and what is made of the fastest.
+  require_memory(as_read, Kept::compared, Way::driven, options.speeds.size() + 1);
   InertiaStudy s;
   s.the_case = prepare(as_read, progress_of).the_case;
   const Case& the_case = s.the_case;

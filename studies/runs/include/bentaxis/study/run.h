@@ -90,10 +90,10 @@ enum class Kept {
   shown,      ///< one model's with all loads, figures and the page
   compared,   ///< both models' with figures and the page
   simulated,  ///< one model's in time, with figures and the page
-  studied,    ///< both models' at several speeds and with pistons of both kinds
 };
+/// @param runs  that are kept at a time
 /// @throws InputError where the samples of the case do not fit into the memory that is available
-void require_memory(const Case& the_case, Kept kept, Way way);
+void require_memory(const Case& the_case, Kept kept, Way way, std::size_t runs = 1);
 /// The same of the rows of a simulation by one or two models.
 void require_memory(const Case& the_case, const DriveSpec& drive, std::size_t models);
 
