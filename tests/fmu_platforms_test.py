@@ -104,7 +104,7 @@ class Archives(unittest.TestCase):
                     (("--fmi", "2", "--platforms", "aarch64-linux"), "--platforms aarch64-linux: FMI 2.0 has no folder for it")]
         refusals.append((("--fmi", "2", "--sources"), "--sources: source code of FMI 2.0 must be C"))
         if not (PROGRAM.parents[1] / "modules/fmu").exists():
-            refusals.append((("--fmi", "3", "--sources"), "--sources: they are not installed; scripts/build_fmu_platforms collects them"))
+            refusals.append((("--fmi", "3", "--sources"), "--sources: the sources are not installed; scripts/build_fmu_platforms collects them"))
             self.library.unlink()
             refusals.append((("--platforms", "x86_64-windows"), "--platforms x86_64-windows: its library is not installed; "
                              "scripts/build_fmu_platforms builds it"))

@@ -134,7 +134,8 @@ std::vector<ArchiveFile> source_files(Version version) {
     throw InputError(given + ": source code of FMI 2.0 must be C, and this is C++; --fmi 3 has it");
   const fs::path folder = folder_with(fs::path("sources") / "buildDescription.xml");
   if (folder.empty())
-    throw InputError(given + ": they are not installed; scripts/build_fmu_platforms collects them");
+    throw InputError(given +
+                     ": the sources are not installed; scripts/build_fmu_platforms collects them");
   std::vector<fs::path> paths;
   for (const auto& entry : fs::recursive_directory_iterator(folder / "sources"))
     if (entry.is_regular_file()) paths.push_back(entry.path());

@@ -45,10 +45,10 @@ struct BodyLoadTable {
   struct Row {
     std::array<double, 3> at, force, moment;  ///< as in BodyLoad
   };
-  std::vector<BodyLoad> loads;  ///< of the first row
-  std::vector<Row> values;      ///< row-major, rows() x loads.size()
-  std::size_t step = 1;         ///< of the run's rows the first and every `step`-th are kept
-  std::size_t appended = 0;
+  std::vector<BodyLoad> loads;      ///< of the first row
+  std::vector<Row> values;          ///< row-major, rows() x loads.size()
+  std::size_t step = 1;             ///< of the run's rows the first and every `step`-th are kept
+  std::size_t appended = 0;         ///< rows of the run, so far
   std::vector<BodySum> worst = {};  ///< see worst_sums; of rows that were appended
 
   /// One that keeps few enough of the rows of a run.
@@ -57,6 +57,7 @@ struct BodyLoadTable {
     return {{}, {}, step > 1 ? step : 1};
   }
 
+  /// Those of the run, of which rows() are kept.
   std::size_t run_rows() const { return appended > 0 ? appended : rows(); }
   std::size_t rows() const { return loads.empty() ? 0 : values.size() / loads.size(); }
   const Row& at(std::size_t row, std::size_t load) const {
