@@ -166,7 +166,7 @@ class OilInTime : public Oil {
   }
   // Where they change with time; where they do not they are held already.
   void follow(double time) const {
-    if (!outside_.oil_is_held()) hold(time);
+    if (!outside_.pressures_are_held()) hold(time);
   }
 
   double load_size(double time) const {

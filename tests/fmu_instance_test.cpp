@@ -297,6 +297,30 @@ TEST(Fmi2, ModelExchangeFollowsCoSimulation) {
   EXPECT_NEAR(other.get("der(state.shaft_angle)"), unit.get("der(state.shaft_angle)"), 1e-3);
 }
 
+TEST(Fmi2, AStateTooFarAwayIsDiscardedAndTheSolverGoesOn) {
+  const Resources resources(kRated, "torque");
+  const Functions& f = library();
+  Unit2 unit(resources, fmi2ModelExchange);
+  unit.set("drive_torque", 290);
+  unit.start();
+  fmi2EventInfo info;
+  ASSERT_EQ(f.fmi2NewDiscreteStates(unit.it, &info), fmi2OK);
+  ASSERT_EQ(f.fmi2EnterContinuousTimeMode(unit.it), fmi2OK);
+  const auto n = static_cast<std::size_t>(
+      std::count_if(resources.variables().begin(), resources.variables().end(),
+                    [](const Variable& it) { return it.role == Role::state; }));
+  std::vector<double> x(n), rate(n), again(n);
+  ASSERT_EQ(f.fmi2GetContinuousStates(unit.it, x.data(), n), fmi2OK);
+  ASSERT_EQ(f.fmi2GetDerivatives(unit.it, rate.data(), n), fmi2OK);
+  const std::vector<double> far(n, 1e300);
+  ASSERT_EQ(f.fmi2SetContinuousStates(unit.it, far.data(), n), fmi2OK);
+  EXPECT_EQ(f.fmi2GetDerivatives(unit.it, again.data(), n), fmi2Discard);
+  EXPECT_TRUE(unit.messages.has("not finite")) << unit.messages.text;
+  ASSERT_EQ(f.fmi2SetContinuousStates(unit.it, x.data(), n), fmi2OK);
+  ASSERT_EQ(f.fmi2GetDerivatives(unit.it, again.data(), n), fmi2OK) << unit.messages.text;
+  EXPECT_EQ(again, rate);
+}
+
 TEST(Fmi2, DirectionalDerivativesAreDifferences) {
   const Resources resources(kHydraulic);
   const Functions& f = library();

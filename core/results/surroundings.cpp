@@ -30,8 +30,8 @@ std::optional<double> along(const std::optional<double>& value, double rate, dou
 
 }  // namespace
 
-bool Surroundings::oil_is_held() const {
-  return suction_rate == 0 && delivery_rate == 0 && load_share_rate == 0;
+bool Surroundings::pressures_are_held() const {
+  return suction_rate == 0 && delivery_rate == 0;
 }
 
 std::optional<double> Surroundings::torque_at(double at) const {

@@ -39,6 +39,11 @@ const char* word_of(unsigned mode) {
   return "after an error: restore a state, reset or free the instance";
 }
 
+// What a solver tries may be too far away: it comes back with other states.
+struct NotComputable : ComputationError {
+  using ComputationError::ComputationError;
+};
+
 void require_finite(double value, const char* what) {
   if (!std::isfinite(value)) throw Refused(std::string(what) + " is not a finite number");
 }
@@ -87,6 +92,9 @@ Status Instance::failed(const char* function) noexcept {
     } catch (const Refused& error) {
       say(error.what());
     } catch (const InputError& error) {
+      say(error.what());
+    } catch (const NotComputable& error) {
+      status = Status::discard;
       say(error.what());
     } catch (const ComputationError& error) {
       mode_ = kFailed;
@@ -371,8 +379,18 @@ void Instance::states(double* values, std::size_t count) {
 void Instance::rates(double* values, std::size_t count) {
   require_count(count, state_count(), "derivatives");
   settle();
-  open_plant().rates(scratch_);
+  find_rates();
   std::copy(scratch_.begin(), scratch_.end(), values);
+}
+
+void Instance::find_rates() {
+  Plant& plant = open_plant();
+  try {
+    plant.rates(scratch_);
+  } catch (const ComputationError& error) {
+    if (mode_ != kContinuous) throw;
+    throw NotComputable(error.what());
+  }
 }
 
 void Instance::indicators(double* values, std::size_t count) {

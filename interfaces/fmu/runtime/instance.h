@@ -155,6 +155,7 @@ class Instance {
  private:
   void require_mode(unsigned modes) const;
   Status failed(const char* function) noexcept;
+  void find_rates();  ///< of the continuous states, into scratch_
 
   const Variable& variable(Reference reference) const;
   std::size_t count_of(Role role) const;

@@ -46,7 +46,7 @@ double Instance::number(Reference reference) {
   if (it.role == Role::output) return plant_->outputs().at(it.place);
   if (it.role == Role::state) return open_plant().states().at(it.place);
   if (it.role == Role::derivative)
-    open_plant().rates(scratch_);
+    find_rates();
   else {
     scratch_.resize(indicator_count());
     open_plant().indicators(scratch_);

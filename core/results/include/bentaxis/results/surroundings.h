@@ -25,7 +25,7 @@ struct Surroundings {
   std::optional<double> load_share;  ///< of the load's size, as the curve of [load] has it; >= 0
   /// What is given changes by so much a second from `time` on.
   double torque_rate = 0, suction_rate = 0, delivery_rate = 0, load_share_rate = 0;
-  bool oil_is_held() const;  ///< pressures and share of the load do not change
+  bool pressures_are_held() const;  ///< suction and delivery do not change
   /// What is given, at another time, s.
   std::optional<double> torque_at(double at) const;
   std::optional<double> suction_at(double at) const;
