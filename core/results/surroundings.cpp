@@ -30,9 +30,7 @@ std::optional<double> along(const std::optional<double>& value, double rate, dou
 
 }  // namespace
 
-bool Surroundings::pressures_are_held() const {
-  return suction_rate == 0 && delivery_rate == 0;
-}
+bool Surroundings::pressures_are_held() const { return suction_rate == 0 && delivery_rate == 0; }
 
 std::optional<double> Surroundings::torque_at(double at) const {
   return along(torque, torque_rate, at - time);
