@@ -107,29 +107,25 @@ closed_form::Pump<long double> extended(const closed_form::Pump<double>& pump) {
 
 template <class Real>
 void all_reactions(const closed_form::Common& common, const closed_form::Pump<Real>& pump,
-                   const Instant& instant, Real* results,
-                   const closed_form::WallMode* modes = nullptr) {
-  with_state<Real>(
-      common.transfer, pump, instant,
-      [&](const auto& state) {
-        closed_form::reactions<Real>(
-            common, pump, state, true,
-            [pressure = instant.chamber_pressure.data()](int k) { return Real(pressure[k]); },
-            [results](int index, Real value) { results[index] = value; });
-      },
-      modes);
+                   const Instant& instant, Real* results) {
+  with_state<Real>(common.transfer, pump, instant, [&](const auto& state) {
+    closed_form::reactions<Real>(
+        common, pump, state, true,
+        [pressure = instant.chamber_pressure.data()](int k) { return Real(pressure[k]); },
+        [results](int index, Real value) { results[index] = value; });
+  });
 }
 
 }  // namespace
 
 bool Model::has_teeth() const { return prepared_->teeth && !prepared_->imposed; }
 
-std::optional<Model::Settled> Model::find(const Instant& instant, std::vector<double>& values,
-                                          const closed_form::WallMode* modes) const {
+std::optional<Model::Settled> Model::find(const Instant& instant,
+                                          std::vector<double>& values) const {
   require_sizes(instant, values, layout_.pistons(), layout_.reactions());
   if (!prepared_->has_tooth_force()) values[layout_.Rcs()] = not_computed();
   all_reactions(values.size() < layout_.size() ? prepared_->common() : prepared_->common(layout_),
-                prepared_->numbers, instant, values.data(), modes);
+                prepared_->numbers, instant, values.data());
   if (!has_teeth()) return {};
   return resolve_tooth_contact(instant, values);
 }
@@ -141,13 +137,8 @@ void Model::act(const Instant& instant, const ToothLag& lag, TeethAction& teeth)
 
 void Model::reactions(const Instant& instant, std::vector<double>& values,
                       TeethAction* teeth) const {
-  const auto settled = find(instant, values, nullptr);
+  const auto settled = find(instant, values);
   if (settled && teeth != nullptr) act(instant, settled->lag, *teeth);
-}
-
-void Model::reactions_held(const Instant& instant, std::vector<double>& values,
-                           const closed_form::WallMode* modes) const {
-  find(instant, values, modes);
 }
 
 AxisMotion Model::block_motion(const AxisMotion& shaft) const {
@@ -361,13 +352,8 @@ MotionChecks judge(const PreparedPump& pump, const PumpParameters& parameters,
 
 void Model::evaluate(const Instant& instant, std::vector<double>& values, MotionChecks* checks,
                      TeethAction* teeth) const {
-  evaluate_held(instant, values, checks, teeth, nullptr);
-}
-
-void Model::evaluate_held(const Instant& instant, std::vector<double>& values, MotionChecks* checks,
-                          TeethAction* teeth, const closed_form::WallMode* modes) const {
   require_sizes(instant, values, layout_.pistons(), layout_.size());
-  const auto settled = find(instant, values, modes);
+  const auto settled = find(instant, values);
   if (settled && teeth != nullptr) act(instant, settled->lag, *teeth);
   const ChannelLayout& at = layout_;
   const double fh = values[at.Fh()];

@@ -27,28 +27,37 @@ BENTAXIS_INLINE void with_shaft_state(TransferKind transfer, const Use& use) {
   of_type(closed_form::State<Real>());
 }
 
+/// theta'' and psi'', rad/s2.
+template <class Real>
+struct Accelerations {
+  Real shaft, block;
+};
+
 /// Calls `use` with the state of an instant that the transfer has: closed_form::State where the
 /// block is locked to the shaft; FreeState where it moves on its own; JointState, CardanState or
 /// DoubleCardanState, whose block follows from the shaft alone; or WallState. The block's motion of
 /// an instant is not looked at where a joint prescribes it.
-/// @param modes  of the walls, where pistons carry the block; null: all by their law
-template <class Real, class Use>
-BENTAXIS_INLINE void with_state(TransferKind transfer, const closed_form::Pump<Real>& pump,
-                                const Instant& instant, const Use& use,
-                                const closed_form::WallMode* modes = nullptr) {
+/// @param by      instead of those of the instant
+/// @param locked  the block turns exactly as the shaft does
+/// @param modes   of the walls, where pistons carry the block; null: all by their law
+template <class Real, class Par, class Use>
+BENTAXIS_INLINE void with_state(TransferKind transfer, const closed_form::Pump<Par>& pump,
+                                const Instant& instant, const Accelerations<Real>& by, bool locked,
+                                const Use& use, const closed_form::WallMode* modes) {
+  using std::sin, std::cos;
   const Real theta = instant.shaft.angle;
   const auto turn_shaft = [&](auto& state) {
-    state.sine = std::sin(theta);
-    state.cosine = std::cos(theta);
+    state.sine = sin(theta);
+    state.cosine = cos(theta);
     state.omega = instant.shaft.speed;
-    state.omega_dot = instant.shaft.acceleration;
+    state.omega_dot = by.shaft;
     state.suction = instant.ports.suction;
     state.delivery = instant.ports.delivery;
   };
   const auto turn_block = [&](auto& state, const Real& half_lead) {
-    state.lead(std::sin(half_lead), std::cos(half_lead));
+    state.lead(sin(half_lead), cos(half_lead));
     state.block_omega = instant.block.speed;
-    state.block_omega_dot = instant.block.acceleration;
+    state.block_omega_dot = by.block;
   };
   if (traits_of(transfer).joint) {
     with_shaft_state<Real>(transfer, [&](auto& state) {
@@ -69,12 +78,21 @@ BENTAXIS_INLINE void with_state(TransferKind transfer, const closed_form::Pump<R
   }
   closed_form::FreeState<Real> state;
   turn_shaft(state);
-  if (instant.locked()) {
+  if (locked) {
     use(static_cast<const closed_form::State<Real>&>(state));
     return;
   }
   turn_block(state, (Real(instant.block.angle) - theta) / 2);
   use(state);
+}
+
+/// The same under the accelerations of the instant.
+template <class Real, class Use>
+BENTAXIS_INLINE void with_state(TransferKind transfer, const closed_form::Pump<Real>& pump,
+                                const Instant& instant, const Use& use) {
+  with_state<Real>(transfer, pump, instant,
+                   Accelerations<Real>{instant.shaft.acceleration, instant.block.acceleration},
+                   instant.locked(), use, nullptr);
 }
 
 }  // namespace bentaxis::analytic

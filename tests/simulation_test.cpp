@@ -8,7 +8,10 @@
 
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/analytic/model.h"
 #include "bentaxis/pump/time_signal.h"
+#include "bentaxis/pump/units.h"
+#include "simulation/responses.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -474,6 +477,56 @@ TEST(Simulation, AnyPumpBalancesItsWork) {
     EXPECT_LT(std::abs(r.worst_work_residual),
               scaled(1e-7) * (std::abs(r.work_of_loads) + std::abs(r.work_of_drives)));
   }
+}
+
+// What the equations of motion take from the closed form is what the model states, under one
+// acceleration or under two at a time.
+TEST(Responses, AreThoseOfTheModel) {
+  for (const char* name : {"bap63_rated", "bap63_constant_velocity", "bap63_cardan",
+                           "bap63_double_cardan", "bap63_tapered_pistons"})
+    for (const double regularization : {0.0, 0.01}) {
+      Case c = read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" /
+                         (std::string(name) + ".toml"));
+      const bool walls = c.pump.transfer.kind == TransferKind::pistons;
+      if (walls && regularization == 0) continue;  // refused
+      c.pump.friction.piston_coulomb = 40;
+      c.pump.friction.regularization = regularization;
+      const analytic::Model model(c.pump, c.analytic);
+      const analytic::simulation::Responses responses(c.pump, c.analytic);
+      const ChannelLayout& at = model.layout();
+      const bool gear = c.pump.transfer.kind == TransferKind::gear;
+      for (const double speed : {-1500.0, 900.0})
+        for (const double degrees : {1.0, 77.0, 240.0}) {
+          SCOPED_TRACE(name + std::string(" ") + std::to_string(degrees));
+          Instant instant;
+          instant.turn(degrees * kRadPerDegree, rad_per_second(speed));
+          if (gear || walls) {
+            instant.block.angle -= 1e-4;
+            instant.block.speed *= 1.01;
+          }
+          for (int k = 0; k < at.pistons(); ++k) instant.chamber_pressure.push_back(1e6 * (k + 1));
+          instant.ports = c.pressure.ports;
+          const analytic::Accelerations<double> by[] = {{300, -4e4}, {-2e5, 7e3}};
+          const auto both = responses.at(instant, by[0], by[1], nullptr);
+          for (int i = 0; i < 2; ++i) {
+            const auto one = responses.at(instant, by[i], nullptr);
+            instant.shaft.acceleration = by[i].shaft;
+            instant.block.acceleration = by[i].block;
+            std::vector<double> values(at.size());
+            model.evaluate(instant, values);
+            const double size = std::abs(values[at.Td()]) + 100;
+            EXPECT_NEAR(one.drive_torque, values[at.Td()], 1e-12 * size);
+            EXPECT_NEAR(both[i].drive_torque, values[at.Td()], 1e-12 * size);
+            double force = 0;
+            if (gear) force = values[at.Rcs()] * (speed < 0 ? -1 : 1);
+            if (walls) force = values[at.Tb()];
+            EXPECT_NEAR(one.tooth_force, force, 1e-10 * size);
+            EXPECT_NEAR(both[i].tooth_force, force, 1e-10 * size);
+            EXPECT_EQ(gear || walls, force != 0);
+          }
+          EXPECT_NE(both[0].drive_torque, both[1].drive_torque);
+        }
+    }
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
       omega_(rad_per_second(the_case.operation.speed_rpm)),
       torque_factor_(the_case.pump.friction.shaft_torque_factor),
       model_(the_case.pump, assumptions),
+      responses_(with_flanks(the_case.pump), assumptions),
       ideal_(with_ideal_rings(the_case.pump), assumptions),
       loads_(the_case.pump, assumptions),
       pump_(the_case.pump),
@@ -63,11 +64,7 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
     wall_modes.assign(static_cast<std::size_t>(the_case.pump.geometry.pistons),
                       closed_form::WallMode::by_law);
   }
-  if (the_case.pump.gear.contact == ToothContact::teeth) {
-    bevel_.emplace(the_case.pump);
-    at_o4_.emplace(with_flanks(the_case.pump), assumptions);
-  }
-  const Model& model = bevel_ ? *at_o4_ : model_;
+  if (the_case.pump.gear.contact == ToothContact::teeth) bevel_.emplace(the_case.pump);
   start_speed_ = start_speed_of(the_case, curve_);
   values_.resize(model_.layout().size());
   instant_.chamber_pressure.resize(model_.layout().pistons());
@@ -81,7 +78,7 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
     for (int k = 0; k < model_.layout().pistons(); ++k)
       instant_.chamber_pressure[k] =
           pressure_(piston_angle_deg(angle / kRadPerDegree, k + 1, model_.layout().pistons()));
-    const Response r = respond(model, 0, 0);
+    const Response r = respond({0, 0});
     torque_scale_ = std::max(torque_scale_, std::abs(r.drive_torque));
     tooth_scale_ = std::max(tooth_scale_, std::abs(r.tooth_force));
   }
@@ -89,9 +86,9 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
   for (const double value : drive_.curve.value)
     if (drive_.kind != DriveKind::speed) torque_scale_ = std::max(torque_scale_, std::abs(value));
   tooth_scale_ = std::max(tooth_scale_, 0.1 * torque_scale_ / arm_);
-  const Response still = respond(model, 0, 0);
-  shaft_inertia_ = std::abs(respond(model, 1e5, 1e5).drive_torque - still.drive_torque) / 1e5;
-  block_inertia_ = std::abs(respond(model, 0, 1e5).tooth_force - still.tooth_force) * arm_ / 1e5;
+  const Response still = respond({0, 0});
+  shaft_inertia_ = std::abs(respond({1e5, 1e5}).drive_torque - still.drive_torque) / 1e5;
+  block_inertia_ = std::abs(respond({0, 1e5}).tooth_force - still.tooth_force) * arm_ / 1e5;
   // What turns the block is then a torque of its own, not one of the shaft.
   if (walls_) shaft_inertia_ += block_inertia_;
   // Rounding leaves this much of nothing.
@@ -106,16 +103,15 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
   probe_ = torque_scale_ / std::max(shaft_inertia_, kMinInertia);
 }
 
-Equations::Response Equations::respond(const Model& model, double shaft_acceleration,
-                                       double block_acceleration) {
+Response Equations::respond(const Accelerations<double>& by) {
   ++evaluations_;
-  instant_.shaft.acceleration = shaft_acceleration;
-  instant_.block.acceleration = block_acceleration;
-  model.reactions_held(instant_, values_, walls_ ? wall_modes.data() : nullptr);
-  if (walls_) return {values_[model.layout().Td()], values_[model.layout().Tb()]};
-  if (!law_ && !bevel_ && pump_.transfer.is_joint()) return {values_[model.layout().Td()], 0};
-  const double tooth = values_[model.layout().Rcs()];
-  return {values_[model.layout().Td()], instant_.shaft.speed < 0 ? -tooth : tooth};
+  return responses_.at(instant_, by, modes());
+}
+
+std::array<Response, 2> Equations::respond(const Accelerations<double>& first,
+                                           const Accelerations<double>& second) {
+  evaluations_ += 2;
+  return responses_.at(instant_, first, second, modes());
 }
 
 void Equations::surround(const Surroundings& outside) {
@@ -324,18 +320,15 @@ Motion Equations::accelerate(double time, const State& y) {
   double shaft = given, block = given;
   if (!compliant()) {
     if (!speed_given) {
-      const Response still = respond(model_, 0, 0);
-      const Response moved = respond(model_, probe_, probe_);
+      const auto [still, moved] = respond({0, 0}, {probe_, probe_});
       shaft = block = (m.drive_torque - still.drive_torque) /
                       (moved.drive_torque - still.drive_torque) * probe_;
     }
   } else {
     find_tooth_force(y, m);
-    const Model& model = bevel_ ? *at_o4_ : model_;
     // Td beyond what it is with the force at O4.
     const double more = bevel_ ? -(m.shaft_moment + m.tooth_force * arm_) / torque_factor_ : 0.0;
-    const Response still = respond(model, given, 0);
-    const Response by_block = respond(model, given, probe_);
+    const auto [still, by_block] = respond({given, 0}, {given, probe_});
     const double block_force = by_block.tooth_force - still.tooth_force;
     const double block_torque = by_block.drive_torque - still.drive_torque;
     const double force = m.tooth_force - still.tooth_force;
@@ -343,7 +336,7 @@ Motion Equations::accelerate(double time, const State& y) {
       block = force / block_force;  // in probes
       m.drive_torque = still.drive_torque + block * block_torque + more;
     } else {
-      const Response by_shaft = respond(model, probe_, 0);
+      const Response by_shaft = respond({probe_, 0});
       const double shaft_force = by_shaft.tooth_force - still.tooth_force;
       const double shaft_torque = by_shaft.drive_torque - still.drive_torque;
       const double torque = m.drive_torque - more - still.drive_torque;
@@ -355,7 +348,7 @@ Motion Equations::accelerate(double time, const State& y) {
   }
   instant_.shaft.acceleration = shaft;
   instant_.block.acceleration = block;
-  if (speed_given && !compliant()) m.drive_torque = respond(model_, shaft, block).drive_torque;
+  if (speed_given && !compliant()) m.drive_torque = respond({shaft, block}).drive_torque;
   if (pump_.transfer.is_joint()) instant_.block = model_.block_motion(instant_.shaft);
   m.shaft = instant_.shaft;
   m.block = instant_.block;
@@ -459,9 +452,9 @@ std::vector<BodyLoad> Equations::body_loads() {
 
 double Equations::kinetic_energy(double time, const State& y) {
   set_speeds(time, y);
-  const Response still = respond(ideal_, 0, 0);
-  const Response by_shaft = respond(ideal_, probe_, 0);
-  const Response by_block = respond(ideal_, 0, probe_);
+  evaluations_ += 3;
+  const auto [still, by_shaft] = ideal_.at(instant_, {0, 0}, {probe_, 0}, modes());
+  const Response by_block = ideal_.at(instant_, {0, probe_}, modes());
   // The mass matrix is what the torques on shaft and block gain by accelerations: the gear's acts
   // on both.
   const double mixed = arm_ * (by_shaft.tooth_force - still.tooth_force);

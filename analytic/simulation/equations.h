@@ -13,6 +13,7 @@
 #include "bentaxis/results/mechanics.h"
 #include "closed_form/gear.h"
 #include "simulation/loads.h"
+#include "simulation/responses.h"
 #include "simulation/walls.h"
 
 namespace bentaxis::analytic::simulation {
@@ -105,10 +106,10 @@ class Equations {
   double wall_energy(double time, const State& y) const;  ///< of the walls, J
 
  private:
-  struct Response {
-    double drive_torque, tooth_force;  // both as the motion needs them
-  };
-  Response respond(const Model& model, double shaft_acceleration, double block_acceleration);
+  const closed_form::WallMode* modes() const { return walls_ ? wall_modes.data() : nullptr; }
+  Response respond(const Accelerations<double>& by);
+  std::array<Response, 2> respond(const Accelerations<double>& first,
+                                  const Accelerations<double>& second);
   Motion accelerate(double time, const State& y);
   void add_rates(double time, const State& y, const Motion& m, State& dy);
   Teeth teeth_at(const State& y) const;
@@ -127,11 +128,11 @@ class Equations {
   double omega_, start_speed_;
   double torque_factor_;
   Model model_;
-  Model ideal_;  // contact of the rings at B: what the mass matrix is found from
+  // With the teeth's torque on the block as a force at O4; what bevel teeth take from the shaft
+  // beyond it is a torque of its own.
+  Responses responses_;
+  Responses ideal_;  // contact of the rings at B: what the mass matrix is found from
   std::optional<BevelTeeth> bevel_;
-  // Accelerations are found with the teeth's torque on the block as a force at O4; what they take
-  // from the shaft beyond it is a torque of its own.
-  std::optional<Model> at_o4_;
   Loads loads_;
   const PumpParameters& pump_;
   Assumptions assumptions_;
@@ -148,7 +149,7 @@ class Equations {
   double probe_ = 1;  // rad/s2, for differences of responses
   double torque_scale_ = 0, tooth_scale_ = 0, shaft_inertia_ = 0, block_inertia_ = 0;
   Instant instant_;
-  std::vector<double> values_;
+  std::vector<double> values_;  // of the channels, for what the rings do
   long evaluations_ = 0;
 };
 

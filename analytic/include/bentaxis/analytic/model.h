@@ -22,9 +22,6 @@
 namespace bentaxis::analytic {
 
 struct PreparedPump;
-namespace closed_form {
-enum class WallMode : signed char;
-}
 
 /// A pump prepared for evaluation at any instant. Immutable, so one object serves many threads;
 /// cheap to copy.
@@ -81,12 +78,6 @@ class Model {
   /// The lag alone, of pistons that carry the block.
   FrozenLag frozen_lag(const Instant& instant, const PressureTrace& pressure) const;
 
-  /// reactions() and evaluate() where an integration holds every wall to a mode.
-  void reactions_held(const Instant& instant, std::vector<double>& values,
-                      const closed_form::WallMode* modes) const;
-  void evaluate_held(const Instant& instant, std::vector<double>& values, MotionChecks* checks,
-                     TeethAction* teeth, const closed_form::WallMode* modes) const;
-
   /// Whether the shaft moves the block by teeth that touch where they are.
   bool has_teeth() const;
 
@@ -124,8 +115,7 @@ class Model {
   };
   template <class Real>
   Settled resolve_tooth_contact(const Instant& instant, std::vector<Real>& values) const;
-  std::optional<Settled> find(const Instant& instant, std::vector<double>& values,
-                              const closed_form::WallMode* modes) const;
+  std::optional<Settled> find(const Instant& instant, std::vector<double>& values) const;
   void act(const Instant& instant, const ToothLag& lag, TeethAction& teeth) const;
 
   PumpParameters pump_;

@@ -1,0 +1,42 @@
+// What drives shaft and block under given accelerations. Internal.
+#pragma once
+
+#include <array>
+
+#include "bentaxis/pump/parameters.h"
+#include "bentaxis/results/instant.h"
+#include "prepared.h"
+#include "turning.h"
+
+namespace bentaxis::analytic::simulation {
+
+/// Both as the equations of motion need them; affine in the accelerations.
+struct Response {
+  double drive_torque;  ///< Td, Nm
+  /// Of a gear the tooth force on the block towards +psi, N; of pistons that carry the block the
+  /// torque that its balance wants from outside, Nm; of a joint 0.
+  double tooth_force;
+};
+
+class Responses {
+ public:
+  Responses(const PumpParameters& pump, const Assumptions& assumptions);
+
+  /// At an instant, whose own accelerations are not looked at.
+  /// @param modes  of the walls; null: all by their law
+  Response at(const Instant& instant, const Accelerations<double>& by,
+              const closed_form::WallMode* modes) const;
+  /// The same under two accelerations, in the time of one but for pistons that carry the block.
+  std::array<Response, 2> at(const Instant& instant, const Accelerations<double>& first,
+                             const Accelerations<double>& second,
+                             const closed_form::WallMode* modes) const;
+
+ private:
+  template <class Real>
+  void find(const Instant& instant, const Accelerations<Real>& by, bool locked,
+            const closed_form::WallMode* modes, Real& drive_torque, Real& tooth_force) const;
+
+  PreparedPump pump_;
+};
+
+}  // namespace bentaxis::analytic::simulation
