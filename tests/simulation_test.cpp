@@ -6,9 +6,9 @@
 #include <cmath>
 #include <map>
 
+#include "bentaxis/analytic/model.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/analytic/model.h"
 #include "bentaxis/pump/time_signal.h"
 #include "bentaxis/pump/units.h"
 #include "simulation/responses.h"

@@ -63,8 +63,7 @@ std::array<Response, 2> Responses::at(const Instant& instant, const Acceleration
   using closed_form::Pair;
   Pair drive_torque, tooth_force;
   find<Pair>(instant, {{first.shaft, second.shaft}, {first.block, second.block}},
-             locked(instant, first) && locked(instant, second), nullptr, drive_torque,
-             tooth_force);
+             locked(instant, first) && locked(instant, second), nullptr, drive_torque, tooth_force);
   return {Response{drive_torque.first(), tooth_force.first()},
           Response{drive_torque.second(), tooth_force.second()}};
 }

@@ -270,6 +270,13 @@ class Simulation {
     }
   }
 
+  // Of the present time, state and law.
+  struct Present {
+    State dy = {};
+    EventFunctions functions;
+    bool known = false;
+  };
+
   // In an order that handle() knows: the interval's two ends, then the teeth.
   EventFunctions event_functions(double time, const State& y, const State& dy) {
     EventFunctions g;
@@ -315,12 +322,18 @@ class Simulation {
       fail("after " + std::to_string(kMaxEvaluations) +
            " evaluations: the motion is too fast for the simulated time; shorten it (duration_s) "
            "or allow a larger error");
-    State dy, out, out_dy;
-    equations_.rates(time_, y_, dy);
-    const EventFunctions before = event_functions(time_, y_, dy);
+    State out, out_dy;
+    if (!present_.known) {
+      equations_.rates(time_, y_, present_.dy);
+      present_.functions = event_functions(time_, y_, present_.dy);
+      present_.known = true;
+    }
+    const State& dy = present_.dy;
+    const EventFunctions& before = present_.functions;
     for (std::size_t i = 0; i < before.count; ++i)
       if (before.all[i].rate > 0 && before.all[i].value > -nearness(i, time_)) {
         handle(i);
+        present_.known = false;
         note_piece();
         return;
       }
@@ -382,12 +395,14 @@ class Simulation {
     if (equations_.compliant() && is_apart()) apart_ += taken;
     time_ = taken == stop - time_ ? stop : time_ + taken;
     y_ = out;
+    present_ = {out_dy, after, true};
     if (taken > smallest_step())
       at_once_ = 0;
     else
       count_at_once();
     if (event < after.count) {
       handle(event);
+      present_.known = false;
       note_piece();
     }
   }
@@ -535,6 +550,7 @@ class Simulation {
   std::ptrdiff_t edge_ = 0;  // that ends the interval
   double time_ = 0, next_ = 0, apart_ = 0, kinetic_ = 0, potential_ = 0;
   State y_ = {};
+  Present present_;
   int at_once_ = 0;
   std::size_t touch_ = kNone;
   std::vector<bool> inside_;  // which pistons are within their walls
