@@ -21,10 +21,10 @@ struct SimulationOptions : bentaxis::SimulationOptions {
 
 /// Integrates the motion of a case's [drive] and evaluates all channels along it.
 ///
-/// Every reaction is affine in (theta'', psi''), so that three evaluations of Model give the
-/// equations of motion. They are integrated by the extrapolation method of Gragg, Bulirsch and
-/// Stoer (Boost.Odeint), whose steps end at every touch and leaving of a flank, at every edge of
-/// the pressure trace that a chamber passes, and at every row. The lag theta - psi is a state of
+/// Every reaction is affine in (theta'', psi''), so that three evaluations of the closed form
+/// give the equations of motion. They are integrated by the extrapolation method of Gragg, Bulirsch
+/// and Stoer (Boost.Odeint), whose steps end at every touch and leaving of a flank, at every edge
+/// of the pressure trace that a chamber passes, and at every row. The lag theta - psi is a state of
 /// its own. docs/motion.md says what was measured against what.
 ///
 /// @throws InputError as Model and drive_of(), where the block is carried by an imposed drive,
