@@ -507,9 +507,13 @@ TEST(Responses, AreThoseOfTheModel) {
           for (int k = 0; k < at.pistons(); ++k) instant.chamber_pressure.push_back(1e6 * (k + 1));
           instant.ports = c.pressure.ports;
           const analytic::Accelerations<double> by[] = {{300, -4e4}, {-2e5, 7e3}};
-          const auto both = responses.at(instant, by[0], by[1], nullptr);
+          analytic::simulation::PistonPowers powers, powers_of_one;
+          const auto both = responses.at(instant, by[0], by[1], nullptr, &powers);
           for (int i = 0; i < 2; ++i) {
-            const auto one = responses.at(instant, by[i], nullptr);
+            const auto one = responses.at(instant, by[i], nullptr, &powers_of_one);
+            for (int k = 0; k < at.pistons(); ++k)
+              EXPECT_NEAR(powers[k], powers_of_one[k], 1e-12 * std::abs(powers_of_one[k]));
+            EXPECT_NE(powers_of_one[0], 0);
             instant.shaft.acceleration = by[i].shaft;
             instant.block.acceleration = by[i].block;
             std::vector<double> values(at.size());

@@ -16,12 +16,14 @@ namespace bentaxis::analytic::closed_form {
 /// @param put       put(column, value): result, in the columns of ChannelLayout; Rcs is not put
 ///                  where the block speed is imposed
 /// @param bodies    false: pistons only
+/// @param moved     moved(k, motion, forces): of each piston
 /// @param t         what the transfer constrains: State of a block that a gear locks to the shaft,
 ///                  FreeState of one that moves on its own, JointState, CardanState,
 ///                  DoubleCardanState, or WallState
-template <class Real, class Par, class Turning, class Pressure, class Put>
+template <class Real, class Par, class Turning, class Pressure, class Put, class Moved>
 BENTAXIS_INLINE void reactions(const Common& common, const Pump<Par>& p, const Turning& t,
-                               bool bodies, const Pressure& pressure, const Put& put) {
+                               bool bodies, const Pressure& pressure, const Put& put,
+                               const Moved& moved) {
   using Q = Quantity;
   const int n = common.pistons;
   const Real zero = 0.0;
@@ -37,6 +39,7 @@ BENTAXIS_INLINE void reactions(const Common& common, const Pump<Par>& p, const T
     const Real friction =
         friction_force(common.friction, p.friction, m.ring_velocity(t.rate()), t.omega);
     PistonForces<Real> f = piston_forces(p.piston, m, t.rate(), t.rate_dot(), friction, chamber);
+    moved(k, m, f);
     if constexpr (std::is_same_v<Turning, WallState<Real>>) {
       const WallApproach<Real> at = wall_approach(p.wall, m, common.clearance(p.wall, k));
       const Real wall = wall_force(p.wall, at, t.mode(k));
@@ -67,6 +70,13 @@ BENTAXIS_INLINE void reactions(const Common& common, const Pump<Par>& p, const T
   put_all<Q::Rb1>(put, n, 0, held.tapered.x, held.tapered.y, held.tapered.z);
   put_all<Q::Rb2>(put, n, 0, held.cylindrical_x, held.cylindrical_y);
   put_all<Q::Td>(put, n, 0, drive_torque(p.shaft, on_shaft, carrying, t.omega, t.omega_dot));
+}
+
+template <class Real, class Par, class Turning, class Pressure, class Put>
+BENTAXIS_INLINE void reactions(const Common& common, const Pump<Par>& p, const Turning& t,
+                               bool bodies, const Pressure& pressure, const Put& put) {
+  reactions<Real>(common, p, t, bodies, pressure, put,
+                  [](int, const PistonMotion<Real>&, const PistonForces<Real>&) {});
 }
 
 }  // namespace bentaxis::analytic::closed_form

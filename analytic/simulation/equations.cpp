@@ -103,15 +103,15 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
   probe_ = torque_scale_ / std::max(shaft_inertia_, kMinInertia);
 }
 
-Response Equations::respond(const Accelerations<double>& by) {
+Response Equations::respond(const Accelerations<double>& by, PistonPowers* powers) {
   ++evaluations_;
-  return responses_.at(instant_, by, modes());
+  return responses_.at(instant_, by, modes(), powers);
 }
 
 std::array<Response, 2> Equations::respond(const Accelerations<double>& first,
                                            const Accelerations<double>& second) {
   evaluations_ += 2;
-  return responses_.at(instant_, first, second, modes());
+  return responses_.at(instant_, first, second, modes(), &piston_powers_);
 }
 
 void Equations::surround(const Surroundings& outside) {
@@ -348,7 +348,8 @@ Motion Equations::accelerate(double time, const State& y) {
   }
   instant_.shaft.acceleration = shaft;
   instant_.block.acceleration = block;
-  if (speed_given && !compliant()) m.drive_torque = respond({shaft, block}).drive_torque;
+  if (speed_given && !compliant())
+    m.drive_torque = respond({shaft, block}, &piston_powers_).drive_torque;
   if (pump_.transfer.is_joint()) instant_.block = model_.block_motion(instant_.shaft);
   m.shaft = instant_.shaft;
   m.block = instant_.block;
@@ -374,7 +375,7 @@ double Equations::pressure_power(double time, const State& y) {
 void Equations::add_rates(double time, const State& y, const Motion& m, State& dy) {
   dy.fill(0);
   const double shaft_speed = m.shaft.speed;
-  double loads = loads_.power(instant_, m.drive_torque);
+  double loads = loads_.power(instant_, m.drive_torque, piston_powers_);
   if (ring_off_) {
     MotionChecks checks{};
     model_.evaluate(instant_, values_, &checks);

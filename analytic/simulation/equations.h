@@ -107,7 +107,8 @@ class Equations {
 
  private:
   const closed_form::WallMode* modes() const { return walls_ ? wall_modes.data() : nullptr; }
-  Response respond(const Accelerations<double>& by);
+  Response respond(const Accelerations<double>& by, PistonPowers* powers = nullptr);
+  // Finds the powers of the pistons too.
   std::array<Response, 2> respond(const Accelerations<double>& first,
                                   const Accelerations<double>& second);
   Motion accelerate(double time, const State& y);
@@ -149,7 +150,8 @@ class Equations {
   double probe_ = 1;  // rad/s2, for differences of responses
   double torque_scale_ = 0, tooth_scale_ = 0, shaft_inertia_ = 0, block_inertia_ = 0;
   Instant instant_;
-  std::vector<double> values_;  // of the channels, for what the rings do
+  PistonPowers piston_powers_ = {};  // of the motion that was found last
+  std::vector<double> values_;       // of the channels, for what the rings do
   long evaluations_ = 0;
 };
 

@@ -27,21 +27,13 @@ void for_each_piston(const PreparedPump& pump, const Instant& instant, const Use
 
 }  // namespace
 
-double Loads::power(const Instant& instant, double drive_torque) const {
+double Loads::power(const Instant& instant, double drive_torque,
+                    const PistonPowers& pistons) const {
   const closed_form::Pump<double>& p = pump_.numbers;
   double power = -(1 - torque_factor_) * drive_torque * instant.shaft.speed -
                  p.shaft.viscous * instant.shaft.speed * instant.shaft.speed -
                  p.block.viscous * instant.block.speed * instant.block.speed;
-  for_each_piston(pump_, instant, [&](const auto& m, std::size_t k, double rate, double omega) {
-    const double ring = m.ring_velocity(rate);
-    const double axial = closed_form::friction_force(pump_.friction, p.friction, ring, omega) -
-                         p.piston.area * instant.chamber_pressure[k];
-    const auto falling = [&](const auto& joint, const auto& axis, double gravity) {
-      return gravity * rate * (p.piston.mass * joint + p.piston.static_moment * axis);
-    };
-    power += axial * ring + falling(m.joint_first.y, m.axis_first.y, p.piston.gravity_y) +
-             falling(m.joint_first.z, m.axis_first.z, p.piston.gravity_z);
-  });
+  for (std::size_t k = 0; k < pump_.phase_sin.size(); ++k) power += pistons[k];
   return power;
 }
 

@@ -4,6 +4,7 @@
 #include "bentaxis/pump/parameters.h"
 #include "bentaxis/results/instant.h"
 #include "prepared.h"
+#include "simulation/responses.h"
 
 namespace bentaxis::analytic::simulation {
 
@@ -14,7 +15,7 @@ class Loads {
 
   /// Of pressure, ring friction and weight on the pistons, of Cc, Cs and the torque's share of
   /// (38): all but what the drive feeds in, W. The rest of the weight does no work.
-  double power(const Instant& instant, double drive_torque) const;
+  double power(const Instant& instant, double drive_torque, const PistonPowers& pistons) const;
   /// Of the pressures on the pistons alone, W.
   double pressure_power(const Instant& instant) const;
 

@@ -10,10 +10,17 @@ namespace bentaxis::analytic::simulation {
 Responses::Responses(const PumpParameters& pump, const Assumptions& assumptions)
     : pump_(prepare(pump, assumptions)) {}
 
+namespace {
+
+double first_of(double value) { return value; }
+double first_of(const closed_form::Pair& values) { return values.first(); }
+
+}  // namespace
+
 template <class Real>
 void Responses::find(const Instant& instant, const Accelerations<Real>& by, bool locked,
-                     const closed_form::WallMode* modes, Real& drive_torque,
-                     Real& tooth_force) const {
+                     const closed_form::WallMode* modes, Real& drive_torque, Real& tooth_force,
+                     PistonPowers* powers) const {
   closed_form::Common common = pump_.common();
   constexpr int kBlockTorque = 1 << 20;  // no other column
   common.block_torque_column = kBlockTorque;
@@ -21,6 +28,7 @@ void Responses::find(const Instant& instant, const Accelerations<Real>& by, bool
   const int carrying = pump_.transfer == TransferKind::gear
                            ? closed_form::column<Quantity::Rcs>(common.pistons, 0, 0)
                            : kBlockTorque;
+  const closed_form::PistonNumbers<double>& piston = pump_.numbers.piston;
   tooth_force = 0;
   const auto use = [&](const auto& state) {
     using Turning = std::decay_t<decltype(state)>;
@@ -31,6 +39,16 @@ void Responses::find(const Instant& instant, const Accelerations<Real>& by, bool
           [&](int column, const Real& value) {
             if (column == td) drive_torque = value;
             if (column == carrying) tooth_force = value;
+          },
+          [&](int k, const auto& m, const auto& f) {
+            if (powers == nullptr) return;
+            const Real rate = state.rate();
+            const auto falling = [&](const Real& joint, const Real& axis, double gravity) {
+              return gravity * rate * (piston.mass * joint + piston.static_moment * axis);
+            };
+            (*powers)[k] = first_of(f.axial * m.ring_velocity(rate) +
+                                    falling(m.joint_first.y, m.axis_first.y, piston.gravity_y) +
+                                    falling(m.joint_first.z, m.axis_first.z, piston.gravity_z));
           });
     }
   };
@@ -49,21 +67,23 @@ bool locked(const Instant& instant, const Accelerations<double>& by) {
 }  // namespace
 
 Response Responses::at(const Instant& instant, const Accelerations<double>& by,
-                       const closed_form::WallMode* modes) const {
+                       const closed_form::WallMode* modes, PistonPowers* powers) const {
   Response r;
-  find<double>(instant, by, locked(instant, by), modes, r.drive_torque, r.tooth_force);
+  find<double>(instant, by, locked(instant, by), modes, r.drive_torque, r.tooth_force, powers);
   return r;
 }
 
 std::array<Response, 2> Responses::at(const Instant& instant, const Accelerations<double>& first,
                                       const Accelerations<double>& second,
-                                      const closed_form::WallMode* modes) const {
+                                      const closed_form::WallMode* modes,
+                                      PistonPowers* powers) const {
   if (pump_.transfer == TransferKind::pistons)
-    return {at(instant, first, modes), at(instant, second, modes)};
+    return {at(instant, first, modes, powers), at(instant, second, modes)};
   using closed_form::Pair;
   Pair drive_torque, tooth_force;
   find<Pair>(instant, {{first.shaft, second.shaft}, {first.block, second.block}},
-             locked(instant, first) && locked(instant, second), nullptr, drive_torque, tooth_force);
+             locked(instant, first) && locked(instant, second), nullptr, drive_torque, tooth_force,
+             powers);
   return {Response{drive_torque.first(), tooth_force.first()},
           Response{drive_torque.second(), tooth_force.second()}};
 }

@@ -18,23 +18,29 @@ struct Response {
   double tooth_force;
 };
 
+/// Of pressure, ring friction and weight on each piston, W; whatever the accelerations.
+using PistonPowers = std::array<double, kMaxPistons>;
+
 class Responses {
  public:
   Responses(const PumpParameters& pump, const Assumptions& assumptions);
 
   /// At an instant, whose own accelerations are not looked at.
-  /// @param modes  of the walls; null: all by their law
+  /// @param modes   of the walls; null: all by their law
+  /// @param powers  where not null: become those of the pistons
   Response at(const Instant& instant, const Accelerations<double>& by,
-              const closed_form::WallMode* modes) const;
+              const closed_form::WallMode* modes, PistonPowers* powers = nullptr) const;
   /// The same under two accelerations, in the time of one but for pistons that carry the block.
   std::array<Response, 2> at(const Instant& instant, const Accelerations<double>& first,
                              const Accelerations<double>& second,
-                             const closed_form::WallMode* modes) const;
+                             const closed_form::WallMode* modes,
+                             PistonPowers* powers = nullptr) const;
 
  private:
   template <class Real>
   void find(const Instant& instant, const Accelerations<Real>& by, bool locked,
-            const closed_form::WallMode* modes, Real& drive_torque, Real& tooth_force) const;
+            const closed_form::WallMode* modes, Real& drive_torque, Real& tooth_force,
+            PistonPowers* powers) const;
 
   PreparedPump pump_;
 };
