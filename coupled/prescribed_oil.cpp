@@ -1,6 +1,7 @@
 #include "bentaxis/coupled/prescribed_oil.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "bentaxis/pump/units.h"
 
@@ -40,7 +41,7 @@ class PrescribedOil : public Oil {
     const bool from_outside = suction || delivery;
     const PortPressures now{suction.value_or(ports_.suction), delivery.value_or(ports_.delivery)};
     loads.chamber_pressure.resize(static_cast<std::size_t>(pistons_));
-    const double degrees = block.angle / kRadPerDegree;
+    const double degrees = on_its_side(block);
     for (int k = 0; k < pistons_; ++k) {
       const double angle = piston_angle_deg(degrees, k + 1, pistons_);
       loads.chamber_pressure[k] =
@@ -63,6 +64,19 @@ class PrescribedOil : public Oil {
   void row(double, const AxisMotion&, const AxisMotion&, const double*, double*) const override {}
 
  private:
+  // Block angle in degrees, or a hair before an edge at which it stands while it turns backwards: a
+  // pressure that jumps there has the value of the side that the block turns to.
+  double on_its_side(const AxisMotion& block) const {
+    constexpr double kOnEdge = 2e-9, kHair = 4e-9;  // the trace takes 1e-9 to be on an edge
+    const double degrees = block.angle / kRadPerDegree;
+    if (block.speed >= 0) return degrees;
+    const double wrapped = wrap_degrees(degrees);
+    const auto is_near = [&](double edge) {
+      return std::abs(std::remainder(edge - wrapped, 360.0)) <= kOnEdge;
+    };
+    return std::any_of(edges_deg_.begin(), edges_deg_.end(), is_near) ? degrees - kHair : degrees;
+  }
+
   int pistons_;
   const PressureTrace& pressure_;
   PortPressures ports_;

@@ -17,13 +17,17 @@ namespace {
 class Rows {
  public:
   Rows(Mechanics& mechanics, const Oil& oil, const System& system, const SystemState& start,
-       Trajectory& trajectory, bool balances, bool body_loads)
+       Trajectory& trajectory, std::size_t rows, bool balances, const Options& options)
       : mechanics_(mechanics),
         oil_(oil),
         system_(system),
         trajectory_(trajectory),
-        body_loads_(body_loads),
+        body_loads_(options.body_loads),
         balances_(balances) {
+    if (options.of_pump_alone) keep_pump_alone();
+    ResultTable& results = trajectory.table.results;
+    results.values.reserve(rows * results.columns());
+    trajectory.table.states.reserve(rows * trajectory.table.state_names.size());
     kinetic_ = mechanics.kinetic_energy(0, start.motion);
     potential_ = mechanics.elastic_energy(0, start.motion);
     work_of_loads_ = start.motion[kWorkOfLoads];
@@ -32,6 +36,7 @@ class Rows {
     if (oil.states() == 0) return;
     OilHistory& history = trajectory.oil.emplace();
     history.columns = oil.columns();
+    history.values.reserve(rows * history.columns.size());
     for (const OilPlace& place : oil.places()) history.energies.push_back({place, 0});
     stored(0, start, energy_, mass_);
   }
@@ -43,6 +48,10 @@ class Rows {
     row_.assign(mechanics_.layout().size(), not_computed());
     MotionChecks checks{};
     mechanics_.row(time, s.motion, loads_, state_, row_, checks);
+    if (!kept_.empty()) {
+      for (std::size_t i = 0; i < kept_.size(); ++i) row_[i] = row_[kept_[i]];
+      row_.resize(kept_.size());
+    }
     append_trajectory_row(trajectory_.table, state_, row_, checks);
     trajectory_.lag.push_back(s.motion[kLag]);
     if (TeethAction action; mechanics_.teeth(time, s.motion, action))
@@ -62,6 +71,18 @@ class Rows {
   }
 
  private:
+  void keep_pump_alone() {
+    std::vector<Channel>& channels = trajectory_.table.results.channels;
+    std::vector<Channel> some;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      const bool of_row = c < mechanics_.layout().size();
+      if (of_row && !(channels[c].kind == ChannelKind::reaction && channels[c].of_pump)) continue;
+      if (of_row) kept_.push_back(c);
+      some.push_back(std::move(channels[c]));
+    }
+    channels = std::move(some);
+  }
+
   void stored(double time, const SystemState& s, double& energy, double& mass) const {
     oil_.stored(time, mechanics_.shaft(time, s.motion), mechanics_.block(time, s.motion),
                 s.oil.data(), energy, mass);
@@ -103,13 +124,15 @@ class Rows {
   double kinetic_ = 0, potential_ = 0, work_of_loads_ = 0, work_of_drive_ = 0;
   double energy_ = 0, mass_ = 0;
   OilLoads loads_;
+  std::vector<std::size_t> kept_;  // channels of a row; empty: all
   std::vector<double> state_, row_;
 };
 
 }  // namespace
 
-std::string method_text(double tolerance) {
-  return "BDF of variable order with Newton's method (CVODES), motion and oil together, " +
+std::string method_text(double tolerance, bool has_oil) {
+  return std::string("BDF of variable order with Newton's method (CVODES), ") +
+         (has_oil ? "motion and oil together, " : "of shaft, block and rotor, ") +
          rounded_text(tolerance) + " per step relative to the scale of each state";
 }
 
@@ -126,7 +149,7 @@ Trajectory tabulate(const std::string& name, Mechanics& mechanics, Oil& oil, con
   HybridIntegrator course(name, mechanics, oil, tolerance, balances);
   course.start(0, start);
   course.foresee(times.back());
-  Rows rows(mechanics, oil, course.system(), start, trajectory, balances, options.body_loads);
+  Rows rows(mechanics, oil, course.system(), start, trajectory, times.size(), balances, options);
   SystemState at = start;
   std::vector<double> integrals;
   const double end = times.back();
@@ -156,7 +179,7 @@ Trajectory tabulate(const std::string& name, Mechanics& mechanics, Oil& oil, con
   record.seconds = watch.seconds();
   record.share_out_of_contact = mechanics.compliant() && end > 0 ? course.time_apart() / end : 0;
   record.events = course.events();
-  record.choice = method_text(tolerance);
+  record.choice = method_text(tolerance, oil.states() > 0);
   return trajectory;
 }
 

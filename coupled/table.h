@@ -20,6 +20,6 @@ Trajectory tabulate(const std::string& name, Mechanics& mechanics, Oil& oil, con
                     const Options& options, const Progress& progress);
 
 /// "BDF of variable order ..", for records.
-std::string method_text(double tolerance);
+std::string method_text(double tolerance, bool has_oil);
 
 }  // namespace bentaxis::coupled

@@ -222,6 +222,52 @@ TEST(WithOil, ErrorOfTheIntegrationIsHeld) {
   }
 }
 
+study::SimulationResult stored_motion(const std::string& name, study::Coordinates coordinates,
+                                      std::optional<double> accuracy = {}) {
+  Case the_case = read_case(kSourceFolder / "reference_data/motion" / name / "case.toml");
+  the_case.drive->duration /= 10;
+  the_case.drive->samples /= 10;
+  study::SimulationChoice choice;
+  choice.coordinates = coordinates;
+  choice.accuracy = accuracy;
+  return study::simulate(study::prepare_simulation(std::move(the_case), choice), choice);
+}
+
+class StoredMotion : public testing::TestWithParam<std::string> {};
+
+// Two formulations of the multibody model, the analytic model beside either: 1e-6 of peak is what
+// each is asked for.
+TEST_P(StoredMotion, IsTheSameInEitherCoordinates) {
+  const auto constraints = stored_motion(GetParam(), study::Coordinates::constraints);
+  const auto independent = stored_motion(GetParam(), study::Coordinates::independent);
+  EXPECT_TRUE(constraints.agrees()) << constraints.headline();
+  EXPECT_TRUE(independent.agrees()) << independent.headline();
+  const double growth = std::max(constraints.growth.back(), independent.growth.back());
+  EXPECT_LT(apart(*constraints.multibody, *independent.multibody), 2e-6 * growth);
+  EXPECT_NE(constraints.multibody->record.choice, independent.multibody->record.choice);
+  EXPECT_EQ(constraints.events.touches[1], independent.events.touches[1]);
+}
+
+TEST_P(StoredMotion, DiffersWhereItIsIntegratedBadly) {
+  const auto bad = stored_motion(GetParam(), study::Coordinates::independent, 1e-4);
+  EXPECT_FALSE(bad.agrees()) << bad.headline();
+  EXPECT_GT(bad.worst()->of_allowed, 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Motions, StoredMotion,
+                         testing::Values("constant_torque", "motor_driven", "rattle"),
+                         [](const auto& parameter) { return parameter.param; });
+
+TEST(Coordinates, AreIndependentWhereFrictionDoesNotJump) {
+  Case the_case = read_case(kSourceFolder / "cases" / "bap63_motor_start.toml");
+  EXPECT_EQ(study::coordinates_of({}, the_case), study::Coordinates::independent);
+  the_case.pump.friction.regularization = 0;
+  EXPECT_EQ(study::coordinates_of({}, the_case), study::Coordinates::constraints);
+  study::SimulationChoice choice;
+  choice.coordinates = study::Coordinates::independent;
+  EXPECT_EQ(study::coordinates_of(choice, the_case), study::Coordinates::independent);
+}
+
 // Columns of a group, "Rs_2_z2_N" of "Rs", over whose peak its differences count.
 std::string group_of(const std::string& column) {
   return column.substr(0, column.find_first_of('_'));

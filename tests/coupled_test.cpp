@@ -734,6 +734,31 @@ TEST(Steady, RefusesWhatHasNoPeriodicMotion) {
 
 // ---- the pump under a prescribed pressure ------------------------------------------------------
 
+// A step from 10 bar to 200 bar at 0 deg of each chamber, and back at 180 deg.
+TEST(PrescribedOil, HasAtAJumpThePressureOfTheSideThatTheBlockTurnsTo) {
+  PressureSpec spec;
+  spec.ports = {10e5, 200e5};
+  spec.transition_deg = 0;
+  spec.delivery_start_deg = 180;
+  const PressureTrace pressure(spec);
+  const auto oil = coupled::prescribed_oil(kPistons, pressure, spec.ports);
+  OilLoads loads;
+  const auto first = [&](double angle, double speed) {
+    oil->loads(0, {angle, speed, 0}, nullptr, loads);
+    return loads.chamber_pressure.front();
+  };
+  for (const double turns : {0.0, -3.0, 1000.0}) {
+    const double jump = 2 * kPi * turns;
+    EXPECT_EQ(first(jump, 10), 10e5);
+    EXPECT_EQ(first(jump, 0), 10e5);
+    EXPECT_EQ(first(jump, -10), 200e5);
+    EXPECT_EQ(first(jump + 1e-9, -10), 10e5);
+    EXPECT_EQ(first(jump - 1e-9, 10), 200e5);
+    EXPECT_EQ(first(jump + kPi, 10), 200e5);
+    EXPECT_EQ(first(jump + kPi, -10), 10e5);
+  }
+}
+
 Case motion_case(const std::string& name) {
   return read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" / "motion" / name /
                    "case.toml");

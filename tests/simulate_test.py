@@ -335,10 +335,14 @@ class TrajectoryTest(SimulateTest):
 
     def test_the_closed_form_is_fast(self):
         """One run, both at the same achieved error, which lies between measured ones."""
-        out = self.simulate(self.case("motor_driven", duration_s=0.01, samples=20)).stdout
-        times = re.search(r"for an error of 1e-06 of peak: analytic (\S+) s, multibody (\S+) s: (\S+) times", out)
-        self.assertGreater(float(times[3]), 50)
-        self.assertAlmostEqual(float(times[2]) / float(times[1]) / float(times[3]), 1, 1)
+        seconds = {}
+        for coordinates, least in (("constraints", 50), ("independent", 5)):
+            out = self.simulate(self.case("motor_driven", duration_s=0.01, samples=20), "--coordinates", coordinates).stdout
+            times = re.search(r"for an error of 1e-06 of peak: analytic (\S+) s, multibody (\S+) s: (\S+) times", out)
+            self.assertGreater(float(times[3]), least)
+            self.assertAlmostEqual(float(times[2]) / float(times[1]) / float(times[3]), 1, 1)
+            seconds[coordinates] = float(times[2])
+        self.assertGreater(seconds["constraints"], 2 * seconds["independent"])  # measured: 7 to 12
 
     def test_a_motor_from_rest_and_curves_over_time(self):
         self.simulate(self.case("motor_driven", start_rpm=0.0, duration_s=0.004, samples=8), "--model", "analytic")
@@ -361,8 +365,10 @@ class RefusalTest(SimulateTest):
         self.refused(base.REPO / "cases" / "bap63_rated.toml", "[drive]", "duration_s")
 
     def test_options_that_would_change_nothing(self):
-        for option in (("--accuracy", "1e-6"), ("--integrator", "rk-merson")):
+        for option in (("--accuracy", "1e-6"), ("--integrator", "rk-merson"), ("--coordinates", "constraints")):
             self.refused(self.case(), option[0], options=("--model", "analytic", *option))
+            self.refused(self.case(), option[0], options=("--steady", *option))
+        self.refused(self.case(), "--integrator", options=("--integrator", "rk3", "--coordinates", "independent"))
 
     def test_dry_friction_where_the_shaft_may_rest(self):
         case = self.case("constant_torque")

@@ -84,14 +84,19 @@ const DriveSpec& drive_of(const Case& the_case) {
   return drive;
 }
 
+bool friction_jumps(const Case& the_case) {
+  const bool free = (the_case.drive && the_case.drive->kind != DriveKind::speed) ||
+                    the_case.pump.block_moves_freely();
+  return free && the_case.pump.friction.piston_coulomb > 0 &&
+         the_case.pump.friction.regularization == 0;
+}
+
 void require_smooth_friction(const Case& the_case) {
-  const bool free =
-      drive_of(the_case).kind != DriveKind::speed || the_case.pump.block_moves_freely();
-  if (free && the_case.pump.friction.piston_coulomb > 0 &&
-      the_case.pump.friction.regularization == 0)
+  if (friction_jumps(the_case))
     throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") +
                      "[friction] regularization_m_per_s = 0: must be > 0 where the oil follows the "
-                     "motion: discontinuous friction cannot be integrated there");
+                     "motion or coordinates are independent: discontinuous friction cannot be "
+                     "integrated there");
 }
 
 }  // namespace bentaxis

@@ -19,7 +19,8 @@ struct SimulateOptions {
   CaseOption the_case;
   ReportPlace place;
   std::string model;  ///< "": both
-  std::string oil;    ///< "": it follows the motion
+  study::Coordinates coordinates = study::Coordinates::independent;
+  std::string oil;  ///< "": it follows the motion
   study::SimulationChoice choice;
   UnitOption unit;
 };
@@ -28,21 +29,27 @@ int simulate(const SimulateOptions& options, const CommandParser& command) {
   study::SimulationChoice choice = options.choice;
   if (options.model == "analytic") choice.only = study::Model::analytic;
   if (options.model == "multibody") choice.only = study::Model::multibody;
-  for (const char* option : {"--integrator", "--accuracy"})
+  for (const char* option : {"--integrator", "--accuracy", "--coordinates"})
     if (command.given(option) && choice.only == study::Model::analytic)
-      throw InputError(std::string(option) +
-                       ": has no effect: only the multibody model is integrated by Simbody");
+      throw InputError(std::string(option) + ": has no effect: it is of the multibody model");
+  if (command.given("--coordinates"))
+    choice.coordinates = options.coordinates;
+  else if (command.given("--integrator") || command.given("--accuracy"))
+    choice.coordinates = study::Coordinates::constraints;  // these are of Simbody's integration
   if (options.oil == "periodic") choice.oil = study::OilInTime::periodic;
   Case read = options.the_case.read();
   drive_of(read);
   const bool one_method =
       (read.pressure.kind == PressureKind::hydraulic && choice.oil == study::OilInTime::follows) ||
       read.pump.gear.contact == ToothContact::teeth || options.unit.given();
-  for (const char* option : {"--integrator", "--accuracy"})
+  for (const char* option : {"--integrator", "--accuracy", "--coordinates"})
     if (command.given(option) && (one_method || choice.steady))
       throw InputError(std::string(option) +
                        ": has no effect: with oil, an FMU, resolved tooth contact or a periodic "
                        "motion, one method integrates both models; --error sets its tolerance");
+  if (command.given("--integrator") && choice.coordinates == study::Coordinates::independent)
+    throw InputError(
+        "--integrator: has no effect: independent coordinates are integrated by one method");
   choice.unit = options.unit.coupling(
       command, read,
       read.pressure.kind == PressureKind::hydraulic && choice.oil == study::OilInTime::follows);
@@ -84,7 +91,8 @@ Command add_simulate_command(CommandParser program) {
   options->unit.add_to(command);
   Option accuracy =
       command.option("--accuracy", options->choice.accuracy,
-                     "relative accuracy per step of the time integrator; of the multibody model");
+                     "relative accuracy per step of the time integrator; of the multibody model, "
+                     "with constraints unless --coordinates says otherwise");
   accuracy.accuracy().text("NUMBER [found for --error]");
   command
       .option(
@@ -94,7 +102,14 @@ Command add_simulate_command(CommandParser program) {
       .number_in(1e-10, 0.1)
       .text("NUMBER [1e-6]");
   command.choice("--integrator", options->choice.integrator, multibody::integrator_names(),
-                 "time integrator of Simbody; of the multibody model");
+                 "time integrator of Simbody; of the multibody model with constraints");
+  command
+      .choice("--coordinates", options->coordinates, study::coordinates_names(),
+              "of the multibody model under given pressures: \"independent\", those of shaft, "
+              "block and "
+              "rotor, from which the pistons follow; or \"constraints\", those of every body, held "
+              "together by constraint equations; slower")
+      .text("constraints|independent [independent]");
   return {command, [options, command] { return simulate(*options, command); }};
 }
 

@@ -34,7 +34,8 @@ constexpr double kStepShare = 1e-3;
 // 2/3.
 constexpr double kLooser = 10;
 constexpr double kChangeOverError = 3.6;
-constexpr double kSteadyShare = 1e-4;  // likewise, of a periodic motion: it is short
+constexpr double kIndependentShare = 1e-4;  // likewise, of the multibody model alone
+constexpr double kSteadyShare = 1e-4;       // likewise, of a periodic motion: it is short
 constexpr double kFinestStep = 1e-12;
 // A disturbance of the wanted error that has grown to this of peak leaves nothing to be judged.
 constexpr double kNothingToJudge = 0.1;
@@ -319,9 +320,11 @@ class Study {
                                 const Progress& after) {
       coupled::Options options = options_for(kLooser * tolerance);
       options.balances = false;
+      options.of_pump_alone = true;
       loose = follow(pump, first, options, before);
       options = options_for(coarse ? kLooser * tolerance : tolerance);
       options.balances = false;
+      options.of_pump_alone = true;
       options.disturbance = r_.disturbance;
       disturbed = follow(pump, first, options, after);
     };
@@ -508,6 +511,12 @@ class Study {
   }
 
   Trajectory multibody(double accuracy, const Progress& progress) const {
+    if (independent()) {
+      coupled::Options options;
+      options.tolerance = accuracy;
+      options.body_loads = true;
+      return CoupledPump(r_.ready, false).simulate(Model::multibody, options, progress);
+    }
     SimulationOptions options;
     options.error = r_.choice.error;
     options.accuracy = accuracy;
@@ -518,9 +527,12 @@ class Study {
                                r_.ready.pressure, options, progress, method);
   }
 
+  bool independent() const {
+    return coordinates_of(r_.choice, r_.ready.the_case) == Coordinates::independent;
+  }
+
   void run_multibody() {
-    const std::string name =
-        multibody::integrator_names()[static_cast<std::size_t>(r_.choice.integrator)];
+    const std::string name = method_of(Model::multibody);
     if (r_.choice.accuracy) {
       const double accuracy = *r_.choice.accuracy;
       r_.multibody = multibody(accuracy, progress_of_(multibody_part(accuracy)));
@@ -532,8 +544,9 @@ class Study {
     // yet a third goes to the accuracy at which it should be, and tells again.
     constexpr int kMaxRuns = 5;
     constexpr double kStep = 10, kMargin = 0.3, kUsualPower = 0.75, kTightest = 1e-12;
-    double loose = kStep * multibody::accuracy_for(r_.choice.error);
-    double tight = loose / kStep;
+    double tight = independent() ? std::max(kTightest, kIndependentShare * r_.choice.error)
+                                 : multibody::accuracy_for(r_.choice.error);
+    double loose = kStep * tight;
     Trajectory before;
     SlowestOf progress(2, progress_of_(multibody_part(tight)));
     numerics::parallel_for(2, 2, [&](std::size_t job) {
@@ -581,9 +594,9 @@ class Study {
 
   std::string method_of(Model model) const {
     if (pump_) return "BDF";
-    return model == Model::analytic
-               ? "extrapolation"
-               : multibody::integrator_names()[static_cast<std::size_t>(r_.choice.integrator)];
+    if (model == Model::analytic) return "extrapolation";
+    if (independent()) return "BDF, independent coordinates";
+    return multibody::integrator_names()[static_cast<std::size_t>(r_.choice.integrator)];
   }
 
   void add_effort(Model model, double asked, const Trajectory& run, double error) {
@@ -820,6 +833,16 @@ std::string SimulationResult::headline() const {
   if (!agrees() && !check_fails && compare::failed_check(checks) != nullptr)
     text += ". " + failed_check_text(*this);
   return text;
+}
+
+const std::vector<std::string>& coordinates_names() {
+  static const std::vector<std::string> names = {"constraints", "independent"};
+  return names;
+}
+
+Coordinates coordinates_of(const SimulationChoice& choice, const Case& the_case) {
+  if (choice.coordinates) return *choice.coordinates;
+  return friction_jumps(the_case) ? Coordinates::constraints : Coordinates::independent;
 }
 
 PreparedCase prepare_simulation(Case the_case, const SimulationChoice& choice,

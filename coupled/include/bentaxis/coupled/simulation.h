@@ -44,6 +44,9 @@ struct Options {
   bool body_loads = false;  ///< Trajectory::loads too
   /// Of simulate(): works, energies and masses too. Without them a run costs less.
   bool balances = true;
+  /// Of simulate(): reactions on the pump as a whole alone, which a run that only tells an error or
+  /// a growth is looked at for.
+  bool of_pump_alone = false;
   /// Of simulate(): acts from outside as far as mechanics and oil take it. Rows at communication
   /// points are those under what acts from then on.
   std::optional<Exchange> exchange;

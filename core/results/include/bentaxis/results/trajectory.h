@@ -127,9 +127,12 @@ MotionTable teeth_table_of(const Trajectory& run, const Gear& gear);
 /// pump: dry friction that jumps (`regularization_m_per_s` = 0) where speeds may vanish.
 const DriveSpec& drive_of(const Case& the_case);
 
-/// @throws InputError where dry friction jumps and the motion depends on it, which an integration
-///         with the oil does not follow: `regularization_m_per_s` = 0 of a shaft or a block that
-///         moves freely
+/// Whether dry friction jumps and the motion depends on it: `regularization_m_per_s` = 0 of a shaft
+/// or a block that moves freely.
+bool friction_jumps(const Case& the_case);
+
+/// @throws InputError where friction_jumps(), which equations of motion in independent coordinates
+///         do not follow
 void require_smooth_friction(const Case& the_case);
 
 }  // namespace bentaxis

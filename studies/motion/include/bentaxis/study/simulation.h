@@ -23,14 +23,27 @@ enum class OilInTime {
              ///< curve for both models
 };
 
+/// In which coordinates the multibody model is integrated, where pressures are given.
+enum class Coordinates {
+  constraints,  ///< of every body, by Simbody; its constraint equations hold pump and pistons
+                ///< together, as in the paper's virtual pump
+  independent,  ///< of what can move by itself: shaft, block, rotor. Simbody's constraint equations
+                ///< give the pistons at every evaluation
+};
+
+/// Names as on the command line, in the order of the enumeration.
+const std::vector<std::string>& coordinates_names();
+
 struct SimulationChoice {
   OilInTime oil = OilInTime::follows;        ///< of hydraulic cases
   bool steady = false;                       ///< the periodic motion instead of that from the start
   std::optional<Model> only;                 ///< none: both, compared
   std::shared_ptr<const UnitCoupling> unit;  ///< that acts on the pump; none: the case alone says
   double error = 1e-6;             ///< of every reaction, of its peak: wanted and tolerated
-  std::optional<double> accuracy;  ///< of Simbody's steps instead of one found for `error`
+  std::optional<double> accuracy;  ///< of the multibody model's steps; none: found for `error`
   multibody::Integrator integrator = multibody::Integrator::runge_kutta_merson;
+  /// None: see coordinates_of(). Of no effect where one method integrates both models.
+  std::optional<Coordinates> coordinates;
 };
 
 /// How far apart the models are in a group of channels, over its scale.
@@ -85,6 +98,9 @@ struct PeriodicMotion {
   std::vector<std::complex<double>> multipliers;  ///< Floquet's, largest magnitude first
   bool stable() const;
 };
+
+/// What is asked for; else independent coordinates, where dry friction does not jump.
+Coordinates coordinates_of(const SimulationChoice& choice, const Case& the_case);
 
 struct SimulationResult {
   PreparedCase ready;
