@@ -634,41 +634,4 @@ std::vector<std::string> files_of(const std::string& json_text) {
   return names;
 }
 
-Values values_of(const ResultTable& table, const std::string& channel_name) {
-  const std::size_t column = table.find(channel_name);
-  Values values;
-  for (std::size_t row = 0; row < table.rows(); ++row) values.push_back(table.at(row, column));
-  return values;
-}
-
-const Values* find(const std::vector<std::pair<std::string, Values>>& columns,
-                   const std::string& name) {
-  for (const auto& [key, values] : columns)
-    if (key == name) return &values;
-  return nullptr;
-}
-
-Curves curves_of(const ResultTable& only) {
-  Curves::Table columns{only.name, {}};
-  for (const Channel& channel : only.channels)
-    if (channel.kind != ChannelKind::check)
-      columns.columns.emplace_back(channel.name, values_of(only, channel.name));
-  return {only.theta_deg, {std::move(columns)}, {}, {}};
-}
-
-Curves curves_of(const ResultTable& first, const ResultTable& second) {
-  Curves curves = curves_of(first);
-  curves.tables.push_back(std::move(curves_of(second).tables.front()));
-  for (std::size_t a = 0; a < first.columns(); ++a) {
-    const std::size_t b = second.find(first.channels[a].name);
-    const ChannelKind kind = first.channels[a].kind;
-    if (b == second.columns() || kind == ChannelKind::check || kind == ChannelKind::input) continue;
-    Values difference;
-    for (std::size_t row = 0; row < first.rows(); ++row)
-      difference.push_back(second.at(row, b) - first.at(row, a));
-    curves.difference.emplace_back(first.channels[a].name, std::move(difference));
-  }
-  return curves;
-}
-
 }  // namespace bentaxis::report

@@ -10,9 +10,6 @@
 namespace bentaxis::report {
 namespace {
 
-// Of curves with more rows than this a page shows some. A turn of a tenth of a degree is whole.
-constexpr std::size_t kMostRows = 4000;
-
 // JSON inside a script element must not contain "</" or "<!--".
 std::string script_safe(const std::string& json) {
   std::string out;
@@ -99,10 +96,11 @@ std::string page_of(const Document& document, const Curves& curves) {
 }  // namespace
 
 std::string render_page(const Document& document, const Curves& curves) {
+  if (!curves.rows.empty()) return page_of(thinned(document, curves.samples, curves.rows), curves);
+  const std::size_t all = curves.theta_deg.size();
   const auto rows = rows_shown(curves, kMostRows);
-  if (rows.size() == curves.theta_deg.size()) return page_of(document, curves);
-  const Thinned shown = thinned(document, curves, rows);
-  return page_of(shown.document, shown.curves);
+  if (rows.size() == all) return page_of(document, curves);
+  return page_of(thinned(document, all, rows), thinned(curves, rows));
 }
 
 }  // namespace bentaxis::report

@@ -10,31 +10,13 @@ namespace {
 
 using Columns = std::vector<std::pair<std::string, Values>>;
 
-void add_extremes(const Columns& columns, std::set<std::size_t>& rows) {
-  for (const auto& [name, values] : columns) {
-    std::size_t least = values.size(), most = values.size();
-    for (std::size_t row = 0; row < values.size(); ++row) {
-      if (!std::isfinite(values[row])) continue;
-      if (least == values.size() || values[row] < values[least]) least = row;
-      if (most == values.size() || values[row] > values[most]) most = row;
-    }
-    if (least == values.size()) continue;
-    rows.insert(least);
-    rows.insert(most);
-  }
-}
-
 // Some rows of what has a value at every row; all of anything else.
 class Kept {
  public:
   Kept(std::size_t all, const std::vector<std::size_t>& rows) : all_(all), rows_(rows) {}
 
   Values operator()(const Values& values) const {
-    if (values.size() != all_) return values;
-    Values some;
-    some.reserve(rows_.size());
-    for (const std::size_t row : rows_) some.push_back(values[row]);
-    return some;
+    return values.size() == all_ ? some_of(values, rows_) : values;
   }
   Columns operator()(const Columns& columns) const {
     Columns some;
@@ -59,6 +41,7 @@ class Kept {
     some.axis = curves.axis;
     some.marks = curves.marks;
     some.samples = all_;
+    some.rows = rows_;
     return some;
   }
 
@@ -69,29 +52,55 @@ class Kept {
 
 }  // namespace
 
-std::vector<std::size_t> rows_shown(const Curves& curves, std::size_t most) {
-  const std::size_t all = curves.theta_deg.size();
-  std::set<std::size_t> rows;
+RowsShown::RowsShown(std::size_t all, std::size_t most) {
   const std::size_t even = std::min(all, most);
-  for (std::size_t i = 0; i < even; ++i) rows.insert(even == 1 ? 0 : i * (all - 1) / (even - 1));
-  if (even < all) {
-    for (const Curves::Table& table : curves.tables) add_extremes(table.columns, rows);
-    add_extremes(curves.difference, rows);
-  }
-  return {rows.begin(), rows.end()};
+  for (std::size_t i = 0; i < even; ++i) rows_.insert(even == 1 ? 0 : i * (all - 1) / (even - 1));
 }
 
-Thinned thinned(const Document& document, const Curves& curves,
-                const std::vector<std::size_t>& rows) {
-  const Kept kept(curves.theta_deg.size(), rows);
-  Thinned result{document, kept(curves)};
-  if (result.document.figures)
-    for (Figure& figure : *result.document.figures)
+void RowsShown::add(const Values& curve) {
+  std::size_t least = curve.size(), most = curve.size();
+  for (std::size_t row = 0; row < curve.size(); ++row) {
+    if (!std::isfinite(curve[row])) continue;
+    if (least == curve.size() || curve[row] < curve[least]) least = row;
+    if (most == curve.size() || curve[row] > curve[most]) most = row;
+  }
+  if (least == curve.size()) return;
+  rows_.insert(least);
+  rows_.insert(most);
+}
+
+std::vector<std::size_t> rows_shown(const Curves& curves, std::size_t most) {
+  const std::size_t all = curves.theta_deg.size();
+  RowsShown shown(all, most);
+  if (all > most) {
+    for (const Curves::Table& table : curves.tables)
+      for (const auto& [name, values] : table.columns) shown.add(values);
+    for (const auto& [name, values] : curves.difference) shown.add(values);
+  }
+  return shown.rows();
+}
+
+Values some_of(const Values& values, const std::vector<std::size_t>& rows) {
+  Values some;
+  some.reserve(rows.size());
+  for (const std::size_t row : rows) some.push_back(values[row]);
+  return some;
+}
+
+Curves thinned(const Curves& curves, const std::vector<std::size_t>& rows) {
+  return Kept(curves.theta_deg.size(), rows)(curves);
+}
+
+Document thinned(const Document& document, std::size_t all, const std::vector<std::size_t>& rows) {
+  const Kept kept(all, rows);
+  Document result = document;
+  if (result.figures)
+    for (Figure& figure : *result.figures)
       if (auto* const channels = std::get_if<ChannelFigure>(&figure.content);
           channels != nullptr && !channels->curves)
         for (Series& series : channels->extra) series.values = kept(series.values);
-  if (result.document.scene && !result.document.scene->curves) {
-    Scene& scene = *result.document.scene;
+  if (result.scene && !result.scene->curves) {
+    Scene& scene = *result.scene;
     for (Values& series : scene.series) series = kept(series);
     scene.rows = rows.size();
   }

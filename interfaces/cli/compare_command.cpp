@@ -183,8 +183,9 @@ int compare(const CompareOptions& options) {
     curves.emplace_back("bands.csv", designs::bands_csv(validation.uncertainty));
     known = designs::validation_text(validation) + "\n";
   }
+  const report::Rows rows = folders.has_figures() ? report::Rows::all : report::Rows::shown;
   const auto paths =
-      folders.write("report", document, study::comparison_curves(result, document), curves);
+      folders.write("report", document, study::comparison_curves(result, document, rows), curves);
 
   print_result(study::comparison_text(result) + known, paths);
   const bool all_ran = !result.engines || say_failures(*result.engines);

@@ -52,6 +52,9 @@ class ReportFolders {
   /// For tables too long to be kept as text: added before write(), they belong to its set.
   OutputFolder& tables() { return report_; }
 
+  /// Whether figures are written too, of which each has all rows.
+  bool has_figures() const { return figures_.has_value(); }
+
   /// Puts NAME.html, NAME.json and further files in place together, then the figures. What an
   /// earlier run of the command left there and this one has not is removed: it belongs to a report
   /// that is no longer there.

@@ -84,7 +84,8 @@ std::vector<std::filesystem::path> report_comparison(const Comparison& self,
         study::comparison_document(result, versions(), study::describe(result, progress_of));
     return write_report(folder, "bentaxis.compare",
                         {&result.first.the_case, &result.second.the_case}, document,
-                        study::comparison_curves(result, document), cli::comparison_files(result));
+                        study::comparison_curves(result, document, report::Rows::shown),
+                        cli::comparison_files(result));
   });
 }
 

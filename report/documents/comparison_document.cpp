@@ -380,27 +380,12 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   return document;
 }
 
-namespace {
-
-void add_budget(report::Curves& curves, const BudgetComparison& budget) {
-  const report::Curves more = report::curves_of(budget.analytic, budget.multibody);
-  // What a page has of the channels already is not added twice.
-  const auto add = [&](auto& columns, const auto& of_budget) {
-    for (const auto& column : of_budget)
-      if (std::none_of(columns.begin(), columns.end(),
-                       [&](const auto& c) { return c.first == column.first; }))
-        columns.push_back(column);
-  };
-  for (std::size_t t = 0; t < curves.tables.size(); ++t)
-    add(curves.tables[t].columns, more.tables[t].columns);
-  add(curves.difference, more.difference);
-}
-
-}  // namespace
-
-report::Curves comparison_curves(const ComparisonResult& r, const report::Document& document) {
-  report::Curves curves = report::curves_of(r.analytic, r.multibody);
-  if (r.budget) add_budget(curves, *r.budget);
+report::Curves comparison_curves(const ComparisonResult& r, const report::Document& document,
+                                 report::Rows which) {
+  std::vector<report::TablePair> pairs = {{r.analytic, r.multibody}};
+  if (r.budget) pairs.emplace_back(r.budget->analytic, r.budget->multibody);
+  // A reference's curves go with all rows.
+  report::Curves curves = report::curves_of(pairs, r.with ? report::Rows::all : which);
   if (!r.with) return curves;
   std::vector<std::string> shown;
   for (const report::Figure& figure : *document.figures)

@@ -46,6 +46,7 @@ struct Curves {
   };
   std::vector<Mark> marks = {};
   std::size_t samples = 0;  ///< that there are, where only some of them are in the curves
+  std::vector<std::size_t> rows = {};  ///< and which; empty: all
 };
 
 }  // namespace bentaxis::report

@@ -495,6 +495,14 @@ Curves curves_of(const ResultTable& first, const ResultTable& second);
 /// Of one table.
 Curves curves_of(const ResultTable& only);
 
+/// Results of the first and of the second model.
+using TablePair = std::pair<const ResultTable&, const ResultTable&>;
+/// Which of the tables' rows curves have: of very many those that a page shows (Curves::rows),
+/// which take a fraction of the tables' memory.
+enum class Rows { all, shown };
+/// Of pairs of tables of the same rows; a column that an earlier pair has is not added again.
+Curves curves_of(const std::vector<TablePair>& pairs, Rows which);
+
 /// One channel's values.
 Values values_of(const ResultTable& table, const std::string& channel_name);
 

@@ -23,8 +23,9 @@ report::Document engine_document(const EngineComparison& engines, const std::str
                                  const std::string& case_name);
 
 /// The curves that its figures name: of both models, their budgets, and the reference they are held
-/// to.
-report::Curves comparison_curves(const ComparisonResult& result, const report::Document& document);
+/// to, with which all rows are there.
+report::Curves comparison_curves(const ComparisonResult& result, const report::Document& document,
+                                 report::Rows which = report::Rows::all);
 
 /// The result in words for a terminal: verdict, worst channels, checks, warnings.
 std::string comparison_text(const ComparisonResult& result);
