@@ -45,6 +45,11 @@ TEST(Fmi2, ParametersAreThoseOfTheCaseWithTheSameWords) {
   EXPECT_EQ(unit.f.fmi2ExitInitializationMode(unit.it), fmi2Error);
   EXPECT_TRUE(unit.messages.has("cannot be assembled")) << unit.messages.text;
   EXPECT_EQ(unit.f.fmi2DoStep(unit.it, 0, 1e-3, 1), fmi2Error);
+  // Only a reset leads on.
+  unit.messages.text.clear();
+  EXPECT_EQ(unit.set("pump.piston_length_mm", 47), fmi2Error);
+  EXPECT_EQ(unit.f.fmi2ExitInitializationMode(unit.it), fmi2Error);
+  EXPECT_TRUE(unit.messages.has("after an error")) << unit.messages.text;
   EXPECT_EQ(unit.f.fmi2Reset(unit.it), fmi2OK);
   unit.done = 0;
   unit.start();

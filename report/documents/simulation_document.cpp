@@ -379,13 +379,12 @@ report::Section effort_section(const SimulationResult& r) {
   section.title = "Speed against error";
   section.text =
       "Largest error of any reaction, of its peak, in the compared time: of the analytic model "
-      "against its tightest run, of Simbody against the analytic model. Runs that tell the error "
-      "of "
-      "another one are made beside it: either takes somewhat longer than alone.";
+      "against its tightest run, of the multibody model against the analytic one. Runs that tell "
+      "the error of another one are made beside it: either takes somewhat longer than alone.";
   for (const auto& [name, run] : runs_of(r))
     section.facts.emplace_back(name + ": chosen", run->record.choice);
   if (!r.multibody_choice.empty())
-    section.facts.emplace_back("accuracy of Simbody", r.multibody_choice);
+    section.facts.emplace_back("accuracy of the multibody model", r.multibody_choice);
   if (const std::string text = race(r); !text.empty())
     section.facts.emplace_back(fmt::format("for an error of {:g} of peak", r.choice.error), text);
   section.table.columns = {"model", "method",     "error or accuracy asked", "error", "s",
