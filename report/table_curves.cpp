@@ -1,7 +1,8 @@
 // Curves of tables of results.
-#include <algorithm>
-#include <functional>
+#include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "bentaxis/report/document.h"
 #include "bentaxis/report/page.h"
@@ -33,13 +34,16 @@ void for_each_difference(const ResultTable& first, const ResultTable& second, co
   }
 }
 
-// use(columns, name, values) of all curves; columns are those of `curves` that they belong to.
+// use(columns, name, values) of every curve once; columns are those of `curves` that it belongs to.
 template <class Use>
 void for_each_curve(const std::vector<TablePair>& pairs, Curves& curves, const Use& use) {
-  for (const auto& [first, second] : pairs) {
-    const auto use_in = [&use](Columns& columns) {
-      return [&](const std::string& name, Values values) { use(columns, name, std::move(values)); };
+  std::set<std::pair<const Columns*, std::string>> used;
+  const auto use_in = [&](Columns& columns) {
+    return [&](const std::string& name, Values values) {
+      if (used.emplace(&columns, name).second) use(columns, name, std::move(values));
     };
+  };
+  for (const auto& [first, second] : pairs) {
     for_each_column(first, use_in(curves.tables[0].columns));
     for_each_column(second, use_in(curves.tables[1].columns));
     for_each_difference(first, second, use_in(curves.difference));
@@ -86,7 +90,6 @@ Curves curves_of(const std::vector<TablePair>& pairs, Rows which) {
     curves.theta_deg = some_of(curves.theta_deg, curves.rows);
   }
   for_each_curve(pairs, curves, [&](Columns& columns, const std::string& name, Values values) {
-    if (find(columns, name) != nullptr) return;
     columns.emplace_back(name,
                          curves.rows.empty() ? std::move(values) : some_of(values, curves.rows));
   });

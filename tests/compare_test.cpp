@@ -534,6 +534,41 @@ TEST(Page, HoldsTheDataAndNeedsNoNetwork) {
   EXPECT_THAT(page, HasSubstr(R"("title":"\u003cT>")"));
 }
 
+// Curves with the rows that a page shows make the page of the curves with all of them, whose
+// figures bring a curve of their own.
+TEST(Page, IsThatOfAllRowsWhereItsCurvesHaveThoseThatItShows) {
+  constexpr std::size_t kRows = 9000;
+  const ChannelLayout layout(5);
+  ResultTable first, budget;
+  first.name = "analytic";
+  first.channels = layout.channels();
+  budget.channels = {first.channels.front(), first.channels.front()};
+  budget.channels.back().name = "of_the_budget_Nm";
+  for (std::size_t row = 0; row < kRows; ++row) {
+    first.theta_deg.push_back(0.04 * static_cast<double>(row));
+    for (std::size_t c = 0; c < first.columns(); ++c)
+      first.values.push_back(std::sin(static_cast<double>(row + 31 * c)) +
+                             (row == 100 * c + 7 ? 3 : 0));
+    for (std::size_t c = 0; c < 2; ++c) budget.values.push_back(row == 4567 + c ? 9 : 1);
+  }
+  budget.theta_deg = first.theta_deg;
+  ResultTable second = first;
+  second.name = "multibody";
+  for (double& value : second.values) value *= 1.5;
+  const std::vector<report::TablePair> pairs = {{first, second}, {budget, budget}};
+  const report::Curves all = report::curves_of(pairs, report::Rows::all);
+  const report::Curves shown = report::curves_of(pairs, report::Rows::shown);
+  EXPECT_EQ(all.theta_deg.size(), kRows);
+  EXPECT_LT(shown.theta_deg.size(), 4500U);
+  report::Document document;
+  report::ChannelFigure figure{"N", {first.channels.front().name}};
+  figure.extra.push_back({"beside", report::values_of(first, first.channels.front().name)});
+  document.figures = {{"one", "One", "", figure}};
+  const std::string page = report::render_page(document, shown);
+  EXPECT_TRUE(page == report::render_page(document, all));
+  EXPECT_NE(page.find("of_the_budget_Nm"), std::string::npos);
+}
+
 // A spike between two of the evenly spread samples stays, with its angle.
 TEST(Page, ShowsSomeOfVeryManySamplesWithTheExtremes) {
   const auto page = [](std::size_t samples) {
