@@ -72,12 +72,15 @@ inline void log3(fmi3InstanceEnvironment environment, fmi3Status status, fmi3Str
       std::to_string(status) + " " + category + ": " + message + "\n";
 }
 
+// The type is FMI's, and both are written by what is called.
+// NOLINTBEGIN(readability-non-const-parameter)
 inline void update3(fmi3InstanceEnvironment environment, fmi3Float64 time,
                     fmi3Boolean set_requested, fmi3Boolean get_allowed, fmi3Boolean finished,
                     fmi3Boolean /*can_return*/, fmi3Boolean* returns, fmi3Float64* when) {
   EXPECT_TRUE(get_allowed && finished);
   static_cast<Messages*>(environment)->update(time, set_requested, *returns, *when);
 }
+// NOLINTEND(readability-non-const-parameter)
 
 constexpr const char* kToken = "{01234567-89ab-cdef-0123-456789abcdef}";
 
