@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "bentaxis/report/document.h"
-#include "bentaxis/report/page.h"
 #include "thinned.h"
 
 namespace bentaxis::report {

@@ -579,12 +579,18 @@ TEST(Page, ShowsSomeOfVeryManySamplesWithTheExtremes) {
       values.push_back(row == 1234 ? 5 : 0);
     }
     curves.tables.push_back({"analytic", {{"Rs_1_x2_N", values}}});
+    curves.axis = "time (ms)";
+    curves.marks = {{77.5, true}};  // it need not lie on a sample
     return report::render_page({}, curves);
   };
   EXPECT_EQ(page(3600).find("\"samples\":"), std::string::npos);
   const std::string whole = page(4000), thinned = page(200000);
   EXPECT_THAT(thinned, HasSubstr("\"samples\":200000"));
   EXPECT_THAT(thinned, HasSubstr(",1234.0,"));
+  for (const std::string& each : {whole, thinned}) {
+    EXPECT_THAT(each, HasSubstr("\"axis\":\"time (ms)\""));
+    EXPECT_THAT(each, HasSubstr("77.5"));
+  }
   EXPECT_EQ(thinned.find(",1235.0,"), std::string::npos);
   EXPECT_LT(thinned.size(), whole.size() + 20000);
 }

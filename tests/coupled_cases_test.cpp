@@ -261,8 +261,17 @@ INSTANTIATE_TEST_SUITE_P(Motions, StoredMotion,
 TEST(Coordinates, AreIndependentWhereFrictionDoesNotJump) {
   Case the_case = read_case(kSourceFolder / "cases" / "bap63_motor_start.toml");
   EXPECT_EQ(study::coordinates_of({}, the_case), study::Coordinates::independent);
+  study::SimulationChoice of_simbody;
+  of_simbody.accuracy = 1e-7;
+  EXPECT_EQ(study::coordinates_of(of_simbody, the_case), study::Coordinates::constraints);
+  of_simbody = {};
+  of_simbody.integrator = multibody::Integrator::verlet;
+  EXPECT_EQ(study::coordinates_of(of_simbody, the_case), study::Coordinates::constraints);
   the_case.pump.friction.regularization = 0;
   EXPECT_EQ(study::coordinates_of({}, the_case), study::Coordinates::constraints);
+  the_case.pump.friction.piston_coulomb = 0;
+  EXPECT_EQ(study::coordinates_of({}, the_case), study::Coordinates::independent);
+  the_case.pump.friction.piston_coulomb = 25;
   study::SimulationChoice choice;
   choice.coordinates = study::Coordinates::independent;
   EXPECT_EQ(study::coordinates_of(choice, the_case), study::Coordinates::independent);

@@ -31,11 +31,12 @@ int simulate(const SimulateOptions& options, const CommandParser& command) {
   if (options.model == "multibody") choice.only = study::Model::multibody;
   for (const char* option : {"--integrator", "--accuracy", "--coordinates"})
     if (command.given(option) && choice.only == study::Model::analytic)
-      throw InputError(std::string(option) + ": has no effect: it is of the multibody model");
+      throw InputError(std::string(option) +
+                       ": has no effect: only the multibody model has this option");
   if (command.given("--coordinates"))
     choice.coordinates = options.coordinates;
-  else if (command.given("--integrator") || command.given("--accuracy"))
-    choice.coordinates = study::Coordinates::constraints;  // these are of Simbody's integration
+  else if (command.given("--integrator"))  // also the one that is the default
+    choice.coordinates = study::Coordinates::constraints;
   if (options.oil == "periodic") choice.oil = study::OilInTime::periodic;
   Case read = options.the_case.read();
   drive_of(read);
@@ -91,8 +92,8 @@ Command add_simulate_command(CommandParser program) {
   options->unit.add_to(command);
   Option accuracy =
       command.option("--accuracy", options->choice.accuracy,
-                     "relative accuracy per step of the time integrator; of the multibody model, "
-                     "with constraints unless --coordinates says otherwise");
+                     "relative accuracy per step of the multibody model's integration; it selects "
+                     "--coordinates constraints unless --coordinates is given");
   accuracy.accuracy().text("NUMBER [found for --error]");
   command
       .option(
@@ -101,14 +102,16 @@ Command add_simulate_command(CommandParser program) {
           "and compared by it")
       .number_in(1e-10, 0.1)
       .text("NUMBER [1e-6]");
-  command.choice("--integrator", options->choice.integrator, multibody::integrator_names(),
-                 "time integrator of Simbody; of the multibody model with constraints");
+  command.choice(
+      "--integrator", options->choice.integrator, multibody::integrator_names(),
+      "time integrator of Simbody for the multibody model; it selects --coordinates constraints");
   command
-      .choice("--coordinates", options->coordinates, study::coordinates_names(),
-              "of the multibody model under given pressures: \"independent\", those of shaft, "
-              "block and "
-              "rotor, from which the pistons follow; or \"constraints\", those of every body, held "
-              "together by constraint equations; slower")
+      .choice(
+          "--coordinates", options->coordinates, study::coordinates_names(),
+          "coordinates in which the multibody model is integrated under a given pressure. "
+          "\"independent\": those of shaft, block and rotor; the pistons follow from them. "
+          "\"constraints\": those of every body; constraint equations hold the bodies together, "
+          "which is slower")
       .text("constraints|independent [independent]");
   return {command, [options, command] { return simulate(*options, command); }};
 }

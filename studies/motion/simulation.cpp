@@ -647,6 +647,7 @@ class Study {
     coupled::Options with_oil = options_for(tolerance_);
     with_oil.times = options.times;
     with_oil.balances = false;
+    with_oil.of_pump_alone = true;
     return follow(*pump_, Model::analytic, with_oil, part(Model::analytic, "over the angle"));
   }
 
@@ -842,7 +843,9 @@ const std::vector<std::string>& coordinates_names() {
 
 Coordinates coordinates_of(const SimulationChoice& choice, const Case& the_case) {
   if (choice.coordinates) return *choice.coordinates;
-  return friction_jumps(the_case) ? Coordinates::constraints : Coordinates::independent;
+  const bool of_simbody = choice.accuracy || choice.integrator != SimulationChoice{}.integrator;
+  return of_simbody || friction_jumps(the_case) ? Coordinates::constraints
+                                                : Coordinates::independent;
 }
 
 PreparedCase prepare_simulation(Case the_case, const SimulationChoice& choice,

@@ -99,7 +99,8 @@ struct PeriodicMotion {
   bool stable() const;
 };
 
-/// What is asked for; else independent coordinates, where dry friction does not jump.
+/// What is asked for; else constraints where accuracy or integrator are, or where dry friction
+/// jumps, and independent coordinates elsewhere.
 Coordinates coordinates_of(const SimulationChoice& choice, const Case& the_case);
 
 struct SimulationResult {
