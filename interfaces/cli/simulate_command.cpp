@@ -108,10 +108,10 @@ Command add_simulate_command(CommandParser program) {
   command
       .choice(
           "--coordinates", options->coordinates, study::coordinates_names(),
-          "coordinates in which the multibody model is integrated under a given pressure. "
-          "\"independent\": those of shaft, block and rotor; the pistons follow from them. "
-          "\"constraints\": those of every body; constraint equations hold the bodies together, "
-          "which is slower")
+          "coordinates in which the multibody model is integrated under a given pressure. With "
+          "\"independent\" they are those of shaft, block and rotor, and the pistons follow from "
+          "them. With \"constraints\" they are those of every body, which constraint equations "
+          "hold together; that is slower")
       .text("constraints|independent [independent]");
   return {command, [options, command] { return simulate(*options, command); }};
 }
