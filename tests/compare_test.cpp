@@ -559,6 +559,14 @@ TEST(Page, IsThatOfAllRowsWhereItsCurvesHaveThoseThatItShows) {
   const report::Curves all = report::curves_of(pairs, report::Rows::all);
   const report::Curves shown = report::curves_of(pairs, report::Rows::shown);
   EXPECT_EQ(all.theta_deg.size(), kRows);
+  const std::string& twice = first.channels.front().name;
+  for (const report::Curves& curves : {all, shown}) {
+    const auto& columns = curves.tables.front().columns;
+    EXPECT_EQ(std::count_if(columns.begin(), columns.end(),
+                            [&](const auto& column) { return column.first == twice; }),
+              1);
+    EXPECT_EQ(report::find(columns, twice)->front(), first.values.front());
+  }
   EXPECT_LT(shown.theta_deg.size(), 4500U);
   report::Document document;
   report::ChannelFigure figure{"N", {first.channels.front().name}};
