@@ -92,8 +92,8 @@ Command add_simulate_command(CommandParser program) {
   options->unit.add_to(command);
   Option accuracy =
       command.option("--accuracy", options->choice.accuracy,
-                     "relative accuracy per step of the multibody model's integration; it selects "
-                     "--coordinates constraints unless --coordinates is given");
+                     "relative accuracy per step of the time integrator; selects --coordinates "
+                     "constraints unless --coordinates is given");
   accuracy.accuracy().text("NUMBER [found for --error]");
   command
       .option(
