@@ -102,9 +102,8 @@ Command add_simulate_command(CommandParser program) {
           "and compared by it")
       .number_in(1e-10, 0.1)
       .text("NUMBER [1e-6]");
-  command.choice(
-      "--integrator", options->choice.integrator, multibody::integrator_names(),
-      "time integrator of Simbody for the multibody model; it selects --coordinates constraints");
+  command.choice("--integrator", options->choice.integrator, multibody::integrator_names(),
+                 "time integrator of Simbody; selects --coordinates constraints");
   command
       .choice(
           "--coordinates", options->coordinates, study::coordinates_names(),
