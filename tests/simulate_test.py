@@ -377,6 +377,10 @@ class RefusalTest(SimulateTest):
             self.refused(self.case(), option[0], options=("--steady", *option))
         self.refused(self.case(), "--integrator", options=("--integrator", "rk3", "--coordinates", "independent"))
 
+    def test_an_error_out_of_range(self):
+        for error in ("9.9e-11", "0.1001"):
+            self.refused(self.case(), "--error", error, "[1e-10, 0.1]", options=("--error", error))
+
     def test_dry_friction_where_the_shaft_may_rest(self):
         case = self.case("constant_torque")
         case.write_text(case.read_text().replace("regularization_m_per_s = 0.01", "regularization_m_per_s = 0.0"))
