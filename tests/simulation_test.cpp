@@ -173,6 +173,66 @@ INSTANTIATE_TEST_SUITE_P(Cases, Drives,
                          testing::Values("constant_torque", "motor_driven", "rattle"),
                          [](const auto& test) { return test.param; });
 
+// Rows within steps have the error that is asked for, at any number of rows.
+TEST(ToothForce, IsThatOfASimulationAtItsRows) {
+  Case the_case = motion_case("rattle");
+  the_case.drive->duration = 0.01;
+  const PressureTrace pressure(the_case.pressure);
+  for (const int samples : {40, 4000}) {
+    the_case.drive->samples = samples;
+    const Trajectory best = run(the_case, wanting(1e-11));
+    const std::vector<double> law = column(best, "Rcs_law_N");
+    const double peak = largest(law);
+    for (const double error : {1e-3, 1e-5, 1e-7}) {
+      std::vector<double> times, force;
+      const TrajectoryRecord record = analytic::watch_tooth_force(
+          the_case, the_case.analytic, pressure, wanting(error), [&](double time, double value) {
+            times.push_back(time);
+            force.push_back(value);
+          });
+      ASSERT_EQ(force.size(), law.size());
+      double worst = 0;
+      for (std::size_t row = 0; row < law.size(); ++row) {
+        ASSERT_EQ(times[row], best.table.state(row, 0));
+        worst = std::max(worst, std::abs(force[row] - law[row]));
+      }
+      EXPECT_LT(worst, scaled(error) * peak) << samples << " rows, error " << error;
+      EXPECT_NEAR(record.share_out_of_contact, best.record.share_out_of_contact, scaled(error));
+      ASSERT_EQ(record.events.size(), best.record.events.size());
+      for (std::size_t i = 0; i < record.events.size(); ++i)
+        EXPECT_NEAR(record.events[i].impulse, best.record.events[i].impulse,
+                    scaled(error) * peak * the_case.drive->duration);
+    }
+  }
+}
+
+TEST(ToothForce, RowsWithinStepsAddFewEvaluations) {
+  Case the_case = motion_case("rattle");
+  the_case.drive->duration = 0.02;
+  const PressureTrace pressure(the_case.pressure);
+  const auto evaluations = [&](int samples) {
+    the_case.drive->samples = samples;
+    return analytic::watch_tooth_force(the_case, the_case.analytic, pressure, wanting(1e-5),
+                                       [](double, double) {})
+        .evaluations;
+  };
+  EXPECT_LT(evaluations(10000), 1.1 * static_cast<double>(evaluations(1)));
+}
+
+TEST(ToothForce, WantsAContactLawAndAGivenSpeed) {
+  const auto watch = [](const Case& the_case) {
+    analytic::watch_tooth_force(the_case, the_case.analytic, PressureTrace(the_case.pressure), {},
+                                [](double, double) {});
+  };
+  Case rigid = motion_case("rattle");
+  rigid.pump.gear.contact = ToothContact::rigid;
+  EXPECT_THROW(watch(rigid), InputError);
+  Case driven = motion_case("rattle");
+  driven.drive->kind = DriveKind::torque;
+  driven.drive->torque = 10;
+  EXPECT_THROW(watch(driven), InputError);
+}
+
 TEST(Simulation, TouchesAreRecordedAndTheirImpulseIsThatOfTheForce) {
   Case the_case = motion_case("rattle");
   the_case.drive->samples = 40000;  // fine enough to integrate the column
@@ -529,6 +589,9 @@ TEST(Responses, AreThoseOfTheModel) {
             EXPECT_EQ(gear || walls, force != 0);
           }
           EXPECT_NE(both[0].drive_torque, both[1].drive_torque);
+          if (!gear) continue;
+          const auto forces = responses.tooth_forces(instant, by[0], by[1]);
+          for (int i = 0; i < 2; ++i) EXPECT_EQ(forces[i], both[i].tooth_force);
         }
     }
 }

@@ -260,7 +260,7 @@ double Equations::flank_force(double approach, double rate) const {
 Motion Equations::motion(double time, const State& y) {
   set_speeds(time, y);
   set_pressures(a_hair_within(instant_.block.angle));
-  return accelerate(time, y);
+  return teeth_alone_ ? accelerate_block(y) : accelerate(time, y);
 }
 
 void Equations::set_loads(const OilLoads& loads) {
@@ -298,17 +298,43 @@ double Equations::drive_torque_at(double time, const State& y) const {
          drive_.motor->coupling_damping * y[kTwistRate];
 }
 
+double Equations::tooth_force(const State& y) const {
+  if (!law_ || teeth.pressing == 0) return 0;
+  return teeth.pressing *
+         flank_force(approach(y, teeth.pressing), approach_rate(y, teeth.pressing));
+}
+
+// As smooth as the law beyond the end of contact, where the force is below 0.
+double Equations::pressing_force(const Motion& m) const {
+  return law_ ? teeth.pressing * m.tooth_force : std::abs(m.tooth_force);
+}
+
+double Equations::tooth_acceleration(const State& y) const {
+  return std::abs(tooth_force(y)) * arm_ / block_inertia_;
+}
+
 // What the teeth do at the instant, by their law.
 void Equations::find_tooth_force(const State& y, Motion& m) {
-  if (law_ && teeth.pressing != 0)
-    m.tooth_force =
-        teeth.pressing * flank_force(approach(y, teeth.pressing), approach_rate(y, teeth.pressing));
+  if (law_) m.tooth_force = tooth_force(y);
   if (!bevel_) return;
   instant_.lag = ToothLag{y[kLag], y[kLagRate]};
   const BevelTeeth::Wrench w =
       bevel_->wrench(instant_.shaft.angle, instant_.shaft.speed, *instant_.lag);
   m.shaft_moment = -BevelTeeth::about_shaft_axis(w.moment);
   m.tooth_force = bevel_->about_block_axis(w.moment) / arm_;
+}
+
+// By the contact law, where the shaft's motion is given: nothing else is known of it then.
+Motion Equations::accelerate_block(const State& y) {
+  Motion m;
+  m.tooth_force = tooth_force(y);
+  const double given = instant_.shaft.acceleration;
+  evaluations_ += 2;
+  const auto [still, by_block] = responses_.tooth_forces(instant_, {given, 0}, {given, probe_});
+  instant_.block.acceleration = (m.tooth_force - still) / (by_block - still) * probe_;
+  m.shaft = instant_.shaft;
+  m.block = instant_.block;
+  return m;
 }
 
 // Of the instant, whose speeds and pressures are set.
@@ -358,7 +384,14 @@ Motion Equations::accelerate(double time, const State& y) {
 
 void Equations::rates(double time, const State& y, State& dy) {
   const Motion m = motion(time, y);
-  add_rates(time, y, m, dy);
+  if (!teeth_alone_) {
+    add_rates(time, y, m, dy);
+    return;
+  }
+  dy.fill(0);
+  dy[kLag] = y[kLagRate];
+  dy[kLagRate] = m.shaft.acceleration - m.block.acceleration;
+  dy[kImpulse] = pressing_force(m);
 }
 
 void Equations::rates_under_loads(double time, const State& y, State& dy) {
@@ -389,7 +422,7 @@ void Equations::add_rates(double time, const State& y, const Motion& m, State& d
   if (compliant()) {
     dy[kLag] = y[kLagRate];
     dy[kLagRate] = m.shaft.acceleration - m.block.acceleration;
-    dy[kImpulse] = std::abs(m.tooth_force);
+    dy[kImpulse] = pressing_force(m);
   }
   if (bevel_) loads += m.shaft_moment * shaft_speed + m.tooth_force * arm_ * m.block.speed;
   if (walls_) {

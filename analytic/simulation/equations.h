@@ -57,6 +57,10 @@ class Equations {
   /// Times at which what drives the shaft changes its law, s.
   std::vector<double> knots() const;
 
+  /// From now on rates() are those of the teeth alone: no work is added up. Of a gear with a
+  /// contact law whose shaft has a given speed.
+  void follow_teeth_alone() { teeth_alone_ = true; }
+
   // The piece of the motion that rates() follows.
   Teeth teeth;
   std::vector<closed_form::WallMode> wall_modes;  ///< of pistons that carry the block
@@ -71,6 +75,10 @@ class Equations {
   double approach_rate(const State& y, int flank) const { return flank * law_->arm * y[kLagRate]; }
   /// The same of bevel teeth, the largest of any pair and slice.
   BevelTeeth::Approach approach_of_teeth(double time, const State& y, int flank) const;
+  /// Of the flank that presses, by its law, N, > 0 towards +psi.
+  double tooth_force(const State& y) const;
+  /// About what that makes of the block, rad/s2, its magnitude.
+  double tooth_acceleration(const State& y) const;
   const std::optional<BevelTeeth>& bevel() const { return bevel_; }
   /// Of the walls, with the accelerations of the motion that was found last.
   const std::vector<WallPath>& wall_paths(double time, const State& y) const;
@@ -112,6 +120,7 @@ class Equations {
   std::array<Response, 2> respond(const Accelerations<double>& first,
                                   const Accelerations<double>& second);
   Motion accelerate(double time, const State& y);
+  Motion accelerate_block(const State& y);
   void add_rates(double time, const State& y, const Motion& m, State& dy);
   Teeth teeth_at(const State& y) const;
   void set_speeds(double time, const State& y);
@@ -120,6 +129,7 @@ class Equations {
   double a_hair_within(double block_angle) const;
   void find_tooth_force(const State& y, Motion& m);
   double drive_torque_at(double time, const State& y) const;
+  double pressing_force(const Motion& m) const;
   double spring_force(double approach) const;
   double flank_force(double approach, double rate) const;
   double motor_torque(double rotor_speed) const;
@@ -138,6 +148,7 @@ class Equations {
   const PumpParameters& pump_;
   Assumptions assumptions_;
   std::optional<BodyLoads> body_loads_;  // made where they are asked for
+  bool teeth_alone_ = false;
   bool ring_off_;  // rings act off B, and do work on the play of their pistons
   std::optional<closed_form::ToothLaw> law_;
   std::optional<Walls> walls_;

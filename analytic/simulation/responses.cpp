@@ -17,7 +17,7 @@ double first_of(const closed_form::Pair& values) { return values.first(); }
 
 }  // namespace
 
-template <class Real>
+template <Responses::Wanted wanted, class Real>
 void Responses::find(const Instant& instant, const Accelerations<Real>& by, bool locked,
                      const closed_form::WallMode* modes, Real& drive_torque, Real& tooth_force,
                      PistonPowers* powers) const {
@@ -37,11 +37,12 @@ void Responses::find(const Instant& instant, const Accelerations<Real>& by, bool
           common, pump_.numbers, state, true,
           [pressure = instant.chamber_pressure.data()](int k) { return Real(pressure[k]); },
           [&](int column, const Real& value) {
-            if (column == td) drive_torque = value;
+            if constexpr (wanted == Wanted::all)
+              if (column == td) drive_torque = value;
             if (column == carrying) tooth_force = value;
           },
           [&](int k, const auto& m, const auto& f) {
-            if (powers == nullptr) return;
+            if (wanted != Wanted::all || powers == nullptr) return;
             const Real rate = state.rate();
             const auto falling = [&](const Real& joint, const Real& axis, double gravity) {
               return gravity * rate * (piston.mass * joint + piston.static_moment * axis);
@@ -69,7 +70,8 @@ bool locked(const Instant& instant, const Accelerations<double>& by) {
 Response Responses::at(const Instant& instant, const Accelerations<double>& by,
                        const closed_form::WallMode* modes, PistonPowers* powers) const {
   Response r;
-  find<double>(instant, by, locked(instant, by), modes, r.drive_torque, r.tooth_force, powers);
+  find<Wanted::all, double>(instant, by, locked(instant, by), modes, r.drive_torque, r.tooth_force,
+                            powers);
   return r;
 }
 
@@ -81,11 +83,22 @@ std::array<Response, 2> Responses::at(const Instant& instant, const Acceleration
     return {at(instant, first, modes, powers), at(instant, second, modes)};
   using closed_form::Pair;
   Pair drive_torque, tooth_force;
-  find<Pair>(instant, {{first.shaft, second.shaft}, {first.block, second.block}},
-             locked(instant, first) && locked(instant, second), nullptr, drive_torque, tooth_force,
-             powers);
+  find<Wanted::all, Pair>(instant, {{first.shaft, second.shaft}, {first.block, second.block}},
+                          locked(instant, first) && locked(instant, second), nullptr, drive_torque,
+                          tooth_force, powers);
   return {Response{drive_torque.first(), tooth_force.first()},
           Response{drive_torque.second(), tooth_force.second()}};
+}
+
+std::array<double, 2> Responses::tooth_forces(const Instant& instant,
+                                              const Accelerations<double>& first,
+                                              const Accelerations<double>& second) const {
+  using closed_form::Pair;
+  Pair unused, tooth_force;
+  find<Wanted::tooth_force, Pair>(
+      instant, {{first.shaft, second.shaft}, {first.block, second.block}},
+      locked(instant, first) && locked(instant, second), nullptr, unused, tooth_force, nullptr);
+  return {tooth_force.first(), tooth_force.second()};
 }
 
 }  // namespace bentaxis::analytic::simulation

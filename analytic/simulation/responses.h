@@ -35,9 +35,14 @@ class Responses {
                              const Accelerations<double>& second,
                              const closed_form::WallMode* modes,
                              PistonPowers* powers = nullptr) const;
+  /// The tooth force alone under two accelerations, of a gear: what the block's motion needs.
+  std::array<double, 2> tooth_forces(const Instant& instant, const Accelerations<double>& first,
+                                     const Accelerations<double>& second) const;
 
  private:
-  template <class Real>
+  // What a response consists of; the rest of the closed form is not computed.
+  enum class Wanted { all, tooth_force };
+  template <Wanted wanted, class Real>
   void find(const Instant& instant, const Accelerations<Real>& by, bool locked,
             const closed_form::WallMode* modes, Real& drive_torque, Real& tooth_force,
             PistonPowers* powers) const;

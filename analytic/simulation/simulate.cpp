@@ -103,6 +103,52 @@ double first_above(const EventFunction& from, const EventFunction& to, double h)
   return 2 * h;
 }
 
+// Lag theta - psi within a step.
+class LagWithin {
+ public:
+  struct End {
+    double lag, rate, acceleration;
+  };
+  // The polynomial of degree 5 through both ends.
+  LagWithin(const End& from, const End& to, double h) : from_(from), h_(h) {
+    const double rise = to.lag - from.lag - h * from.rate - h * h / 2 * from.acceleration;
+    const double rate = (to.rate - from.rate - h * from.acceleration) * h;
+    const double bend = (to.acceleration - from.acceleration) * h * h;
+    cubic_ = 10 * rise - 4 * rate + bend / 2;
+    quartic_ = -15 * rise + 7 * rate - bend;
+    quintic_ = 6 * rise - 3 * rate + bend / 2;
+  }
+
+  // With this acceleration in the middle: what is added is a multiple of s^3 (1 - s)^3, whose
+  // second derivative there is -3/8.
+  LagWithin with_middle(double acceleration) const {
+    LagWithin better = *this;
+    const double found =
+        from_.acceleration + (3 * cubic_ + 3 * quartic_ + 2.5 * quintic_) / (h_ * h_);
+    better.added_ = (found - acceleration) * h_ * h_ / 0.375;
+    return better;
+  }
+  // The largest that was added, to the lag and to its rate.
+  double change() const { return std::abs(added_) / 64; }
+  double change_of_rate() const { return std::abs(added_) * kSteepest / h_; }
+
+  // At a share `s` of the step.
+  void at(double s, double& lag, double& rate) const {
+    const double t = s * h_, within = s * (1 - s);
+    lag = from_.lag + t * (from_.rate + t / 2 * from_.acceleration) +
+          s * s * s * (cubic_ + s * (quartic_ + s * quintic_)) + added_ * within * within * within;
+    rate = from_.rate + t * from_.acceleration +
+           s * s * (3 * cubic_ + s * (4 * quartic_ + s * 5 * quintic_)) / h_ +
+           added_ * 3 * within * within * (1 - 2 * s) / h_;
+  }
+
+ private:
+  static constexpr double kSteepest = 0.0536656;  // largest slope of s^3 (1 - s)^3
+  End from_;
+  double h_, cubic_, quartic_, quintic_;
+  double added_ = 0;
+};
+
 class Simulation {
  public:
   Simulation(const Case& the_case, const Assumptions& assumptions, const PressureTrace& pressure,
@@ -112,14 +158,44 @@ class Simulation {
         progress_(progress),
         pieces_(pieces),
         tolerance_(std::max(kTightest, options.accuracy.value_or(options.error * kStepShare))),
-        stepper_(equations_, equations_.scales(), tolerance_),
+        scale_(equations_.scales()),
+        stepper_(equations_, scale_, tolerance_),
+        row_stepper_(equations_, scale_, tolerance_),
         edges_deg_(block_edges_deg(pressure, the_case.pump.geometry.pistons)) {}
 
   Trajectory run() {
+    Trajectory trajectory;
+    trajectory.table =
+        trajectory_table("analytic", equations_.model().layout(), equations_.drive());
+    const std::vector<double> stops = rows();
+    trajectory.loads = BodyLoadTable::of(stops.size());
+    follow(stops, [&] { add_row(trajectory); });
+    trajectory.record = record_;
+    return trajectory;
+  }
+
+  TrajectoryRecord watch(const ToothForceSink& see) {
+    equations_.follow_teeth_alone();
+    seen_ = {rows(), see};
+    if (!seen_.times.empty()) follow({seen_.times.back()}, [] {});
+    return record_;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& why) const {
+    throw ComputationError("analytic model: the simulation stops at " + number_text(time_) +
+                           " s: " + why);
+  }
+
+  std::vector<double> rows() const {
+    return options_.times.empty() ? trajectory_times(equations_.drive()) : options_.times;
+  }
+
+  // The whole motion, to every stop.
+  template <class At>
+  void follow(const std::vector<double>& stops, const At& at_stop) {
     const Stopwatch watch;
     const DriveSpec& drive = equations_.drive();
-    Trajectory trajectory;
-    trajectory.table = trajectory_table("analytic", equations_.model().layout(), drive);
     y_ = equations_.start(options_);
     start_piece();
     start_teeth();
@@ -127,37 +203,24 @@ class Simulation {
     if (equations_.teeth.pressing != 0) contact_changes(0, equations_.teeth.pressing);
     kinetic_ = equations_.kinetic_energy(0, y_);
     potential_ = potential_energy();
-    const std::vector<double> stops =
-        options_.times.empty() ? trajectory_times(drive) : options_.times;
-    const std::size_t rows = stops.size();
-    trajectory.loads = BodyLoadTable::of(rows);
     next_ = drive.duration * kFirstStep;
     note_piece();
     for (const double knot : equations_.knots()) knots_.push_back(knot);
-    for (std::size_t row = 0; row < rows; ++row) {
-      while (time_ < stops[row]) {
+    for (const double stop : stops) {
+      while (time_ < stop) {
         const auto knot = std::upper_bound(knots_.begin(), knots_.end(), time_);
-        advance(knot != knots_.end() ? std::min(*knot, stops[row]) : stops[row]);
+        advance(knot != knots_.end() ? std::min(*knot, stop) : stop);
       }
-      add_row(trajectory);
+      at_stop();
     }
     close_contact();
     note_piece();
-    TrajectoryRecord& record = trajectory.record;
-    record = record_;
-    record.evaluations = equations_.evaluations();
-    record.seconds = watch.seconds();
-    record.share_out_of_contact = equations_.compliant() ? apart_ / drive.duration : 0;
-    record.choice = "Gragg-Bulirsch-Stoer extrapolation, " + rounded_text(tolerance_) +
-                    " per step relative to the scale of each state, for an error of " +
-                    rounded_text(options_.error) + " of peak";
-    return trajectory;
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& why) const {
-    throw ComputationError("analytic model: the simulation stops at " + number_text(time_) +
-                           " s: " + why);
+    record_.evaluations = equations_.evaluations();
+    record_.seconds = watch.seconds();
+    record_.share_out_of_contact = equations_.compliant() ? apart_ / drive.duration : 0;
+    record_.choice = "Gragg-Bulirsch-Stoer extrapolation, " + rounded_text(tolerance_) +
+                     " per step relative to the scale of each state, for an error of " +
+                     rounded_text(options_.error) + " of peak";
   }
 
   // The interval between edges of pressure in which the block stands, or which it enters.
@@ -345,6 +408,7 @@ class Simulation {
         const double ahead = -before.all[i].value / before.all[i].rate;
         if (ahead > 0) h = std::min(h, ahead * (1 + 1e-6));
       }
+    h = std::min(h, longest_before_leaving(dy));
     double taken = h;
     double proposal = h;
     if (!stepper_.attempt(time_, y_, dy, proposal, out)) {
@@ -353,6 +417,7 @@ class Simulation {
     }
     ++record_.steps;
     const double free_proposal = proposal;
+    if (law_is_new_ && h >= next_) note_first_step(taken);
     equations_.rates(time_ + taken, out, out_dy);
     EventFunctions after = event_functions(time_ + taken, out, out_dy);
     std::size_t event = after.count;
@@ -393,7 +458,9 @@ class Simulation {
     else
       next_ = free_proposal;
     if (equations_.compliant() && is_apart()) apart_ += taken;
-    time_ = taken == stop - time_ ? stop : time_ + taken;
+    const double end = taken == stop - time_ ? stop : time_ + taken;
+    see_within({time_, y_, dy}, {end, out, out_dy});
+    time_ = end;
     y_ = out;
     present_ = {out_dy, after, true};
     if (taken > smallest_step())
@@ -405,6 +472,64 @@ class Simulation {
       present_.known = false;
       note_piece();
     }
+  }
+
+  struct Moment {
+    double time;
+    State y, dy;
+    LagWithin::End lag() const { return {y[kLag], y[kLagRate], dy[kLagRate]}; }
+  };
+
+  // Rows within a step or a part of it, which do not end it: lag and rate are those of the
+  // polynomial of degree 6 that has lag, rate and acceleration of both ends and the acceleration in
+  // the middle. It is taken where the middle changes that of degree 5 by little; the next
+  // acceleration would change it by a tenth of that or less, as long as a step is a third of a
+  // swing or less. Else each half has one of its own.
+  void see_within(const Moment& from, const Moment& to) {
+    constexpr double kNextChange = 0.1;
+    const auto waiting = [&] {
+      return seen_.next < seen_.times.size() && seen_.times[seen_.next] <= to.time;
+    };
+    if (!waiting()) return;
+    const double h = to.time - from.time;
+    Moment there{from.time + h / 2, from.y, {}};
+    const LagWithin lag(from.lag(), to.lag(), h);
+    lag.at(0.5, there.y[kLag], there.y[kLagRate]);
+    equations_.rates(there.time, there.y, there.dy);
+    const LagWithin better = lag.with_middle(there.dy[kLagRate]);
+    const double allowed = options_.error / kNextChange;
+    if (better.change() > allowed * scale_[kLag] ||
+        better.change_of_rate() > allowed * scale_[kLagRate]) {
+      if (h < smallest_step()) fail("rows within a step cannot be found");
+      there = moved(from, there.time);
+      see_within(from, there);
+      see_within(there, to);
+      return;
+    }
+    for (; waiting(); ++seen_.next) {
+      const double time = seen_.times[seen_.next];
+      better.at((time - from.time) / h, there.y[kLag], there.y[kLagRate]);
+      seen_.sink(time, equations_.tooth_force(there.y));
+    }
+  }
+
+  // By steps that nothing else depends on.
+  Moment moved(Moment from, double time) {
+    State out;
+    double h = time - from.time;
+    while (from.time < time) {
+      const double asked = h = std::min(h, time - from.time);
+      if (row_stepper_.attempt(from.time, from.y, from.dy, h, out)) {
+        from.time = asked == time - from.time ? time : from.time + asked;
+        from.y = out;
+        equations_.rates(from.time, from.y, from.dy);
+      } else {
+        h = std::min(h, asked / 2);
+        if (h < smallest_step())
+          fail("the motion changes too fast there: the step falls below round-off");
+      }
+    }
+    return from;
   }
 
   double potential_energy() {
@@ -423,7 +548,36 @@ class Simulation {
       pieces_->push_back({time_, y_, equations_.teeth, equations_.from_angle, equations_.to_angle});
   }
 
+  // A force like x^1.5 is not smooth where the flank leaves, and steps to there fail: they come
+  // nearer by a share of what is left, until all the force that is left is no error.
+  double longest_before_leaving(const State& dy) const {
+    constexpr double kShareOfWay = 0.8, kErrorOfForce = 0.05;
+    const int flank = equations_.teeth.pressing;
+    if (flank == 0 || equations_.law().exponent == 1) return HUGE_VAL;
+    // Where x + v t + a t^2 / 2 passes 0.
+    const double x = equations_.approach(y_, flank), v = equations_.approach_rate(y_, flank);
+    const double a = flank * equations_.law().arm * dy[kLagRate];
+    const double root = std::sqrt(v * v - 2 * a * x);
+    const double left = v > 0 && a < 0 ? -(v + root) / a : 2 * x / (root - v);
+    const double lost = kErrorOfForce * equations_.tooth_acceleration(y_) * left;
+    return left > 0 && lost > tolerance_ * scale_[kLagRate] ? kShareOfWay * left : HUGE_VAL;
+  }
+
+  // A flank touches or leaves: the first step is that which the last motion of this kind began
+  // with, a little more if it was taken at once.
+  void begin_law() {
+    law_is_new_ = true;
+    first_failed_ = false;
+    if (const double first = first_steps_[is_apart() ? 0 : 1]; first > 0) next_ = first;
+  }
+  void note_first_step(double taken) {
+    constexpr double kMore = 1.5;
+    law_is_new_ = false;
+    first_steps_[is_apart() ? 0 : 1] = first_failed_ ? taken : kMore * taken;
+  }
+
   void shrink(double taken, double proposal) {
+    first_failed_ = true;
     next_ = std::min(proposal, taken / 2);
     if (next_ < smallest_step())
       fail("the motion changes too fast there: the step falls below round-off");
@@ -450,6 +604,7 @@ class Simulation {
       change_wall((guard - 2) / 2, guard % 2 == 0);
       return;
     }
+    const bool was_apart = is_apart();
     const Teeth was = equations_.teeth;
     const int within = was.pressing + was.idle;
     Teeth& teeth = equations_.teeth;
@@ -466,6 +621,7 @@ class Simulation {
       std::swap(teeth.pressing, teeth.idle);
     }
     if (was.pressing != teeth.pressing) contact_changes(was.pressing, teeth.pressing);
+    if (is_apart() != was_apart) begin_law();
   }
 
   // A piston passes the end of contact, or its push ends or starts within.
@@ -544,13 +700,23 @@ class Simulation {
   const Progress& progress_;
   std::vector<Piece>* pieces_;
   double tolerance_;
-  Stepper stepper_;
+  State scale_;
+  Stepper stepper_, row_stepper_;
   std::vector<double> edges_deg_, knots_, row_;
   double turn_ = 0;
   std::ptrdiff_t edge_ = 0;  // that ends the interval
   double time_ = 0, next_ = 0, apart_ = 0, kinetic_ = 0, potential_ = 0;
   State y_ = {};
   Present present_;
+  struct Seen {
+    std::vector<double> times;
+    ToothForceSink sink;
+    std::size_t next = 0;
+  };
+  Seen seen_;  // rows that do not end a step
+  // Of motion without and with a flank that presses, s; 0: not known yet.
+  std::array<double, 2> first_steps_ = {};
+  bool law_is_new_ = false, first_failed_ = false;
   int at_once_ = 0;
   std::size_t touch_ = kNone;
   std::vector<bool> inside_;  // which pistons are within their walls
@@ -585,6 +751,17 @@ Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
   return simulation::Simulation(simulation::without_teeth(the_case), assumptions, pressure, options,
                                 progress, nullptr)
       .run();
+}
+
+TrajectoryRecord watch_tooth_force(const Case& the_case, const Assumptions& assumptions,
+                                   const PressureTrace& pressure, const SimulationOptions& options,
+                                   const ToothForceSink& see) {
+  if (the_case.pump.gear.contact != ToothContact::compliant ||
+      the_case.pump.transfer.kind != TransferKind::gear)
+    throw InputError("[gear] contact: must be \"compliant\" where a tooth force is watched");
+  if (drive_of(the_case).kind != DriveKind::speed)
+    throw InputError("[drive] kind: must be \"speed\" where a tooth force is watched");
+  return simulation::Simulation(the_case, assumptions, pressure, options, {}, nullptr).watch(see);
 }
 
 }  // namespace bentaxis::analytic

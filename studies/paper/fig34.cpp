@@ -143,13 +143,11 @@ class Study {
     for (int i = 1; i <= counted * samples; ++i)
       asked.times.push_back(turn * (options_.turns_left_out + static_cast<double>(i) / samples));
     try {
-      const Trajectory run =
-          analytic::simulate(the_case, the_case.analytic, ready_.pressure, asked);
-      const ResultTable& table = run.table.results;
-      const std::size_t column = table.find("Rcs_law_N");
       std::vector<double> force;
-      for (std::size_t row = 0; row < table.rows(); ++row)
-        force.push_back(along_x2(the_case, table.at(row, column)));
+      force.reserve(asked.times.size());
+      analytic::watch_tooth_force(
+          the_case, the_case.analytic, ready_.pressure, asked,
+          [&](double, double tooth_force) { force.push_back(along_x2(the_case, tooth_force)); });
       Fig34Curve curve =
           seen_in_windows(force, windows, options_.turns, the_case.pump.geometry.pistons);
       if (keep) {

@@ -1,6 +1,7 @@
 // Motion of shaft and block in time, from the closed form.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "bentaxis/pump/case.h"
@@ -34,5 +35,19 @@ struct SimulationOptions : bentaxis::SimulationOptions {
 Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
                     const PressureTrace& pressure, const SimulationOptions& options = {},
                     const Progress& progress = {});
+
+/// Takes the force of a contact law at a row, N, > 0 where it pushes the block towards +psi: the
+/// column Rcs_law_N of simulate().
+using ToothForceSink = std::function<void(double time_s, double force)>;
+
+/// The same motion, of which nothing but the tooth force is looked at. Neither reactions nor work
+/// are computed, and a row does not end a step: its force is that of a polynomial within the step,
+/// held to options.error.
+/// @param the_case  of a gear with a contact law and a drive of given speed
+/// @return without work and energy
+/// @throws as simulate(); InputError where the case is of another kind
+TrajectoryRecord watch_tooth_force(const Case& the_case, const Assumptions& assumptions,
+                                   const PressureTrace& pressure, const SimulationOptions& options,
+                                   const ToothForceSink& see);
 
 }  // namespace bentaxis::analytic
