@@ -83,6 +83,9 @@ void compare_channel(const ResultTable& first, std::size_t a, const ResultTable&
   std::size_t both = 0;
   double square = 0;
   double beyond = 0, uncertainty_there = 0;
+  const std::size_t off =
+      options.uncertainty ? options.uncertainty->find(first.channels[a].name) : 0;
+  const bool uncertain = options.uncertainty && off < options.uncertainty->columns();
   for (std::size_t row = 0; row < first.rows(); ++row) {
     const double x = first.at(row, a);
     const double y = second.at(row, b);
@@ -99,7 +102,7 @@ void compare_channel(const ResultTable& first, std::size_t a, const ResultTable&
     result.mean[0] += x;
     result.mean[1] += y;
     result.mean_difference += difference;
-    const double uncertainty = options.uncertainty ? options.uncertainty->at(row, a) : 0;
+    const double uncertainty = uncertain ? options.uncertainty->at(row, off) : 0;
     if (both == 1 || !(std::abs(difference) - uncertainty <= beyond)) {
       beyond = std::abs(difference) - uncertainty;
       uncertainty_there = uncertainty;

@@ -330,6 +330,21 @@ TEST(Verdict, ABandWithoutAFiniteLimitHoldsNothing) {
     }
 }
 
+// It is found by the channel's name: a table of some channels says nothing of the others.
+TEST(Verdict, AnUncertaintyIsThatOfTheChannelOfItsName) {
+  const std::vector<Channel> channels = {channel("X_N", "X"), channel("Y_N", "Y")};
+  const auto constant = [](double value) { return [value](double) { return value; }; };
+  const auto a = table("a", channels, {constant(100), constant(100)});
+  const auto b = table("b", channels, {constant(103), constant(103)});
+  const ResultTable of_y = table("u", {channel("Y_N", "Y")}, {constant(5)});
+  Options options;
+  options.tolerance = 1e-2;
+  options.uncertainty = &of_y;
+  const Comparison found = compare_tables(a, b, options);
+  EXPECT_EQ(found.find("X_N")->verdict, Verdict::differs);
+  EXPECT_EQ(found.find("Y_N")->verdict, Verdict::agrees);
+}
+
 TEST(Verdict, AnUncertaintyExcusesWhereItIsAndByItsSize) {
   const std::vector<Channel> channels = {channel("X_N", "X")};
   const auto at_90 = [](double most, double elsewhere) {

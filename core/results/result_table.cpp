@@ -108,6 +108,7 @@ ResultTable select_channels(const ResultTable& table,
       columns.push_back(column);
       selected.channels.push_back(table.channels[column]);
     }
+  selected.values.reserve(table.rows() * columns.size());
   for (std::size_t row = 0; row < table.rows(); ++row)
     for (const std::size_t column : columns) selected.values.push_back(table.at(row, column));
   return selected;

@@ -21,6 +21,18 @@ void Samples::instant(std::size_t row, Instant& instant) const {
   instant.chamber_pressure.assign(first, first + pistons);
 }
 
+Samples Samples::part(std::size_t first, std::size_t count) const {
+  const std::size_t begin = std::min(first, theta_deg.size());
+  const std::size_t end = begin + std::min(count, theta_deg.size() - begin);
+  const auto rows = [](const std::vector<double>& all, std::size_t from, std::size_t to) {
+    return std::vector<double>(all.begin() + static_cast<std::ptrdiff_t>(from),
+                               all.begin() + static_cast<std::ptrdiff_t>(to));
+  };
+  const auto n = static_cast<std::size_t>(pistons);
+  return {rows(theta_deg, begin, end), rows(chamber_pressure, begin * n, end * n), ports, omega,
+          pistons};
+}
+
 void require_constant_speed(const Case& the_case) {
   const TransferKind kind = the_case.pump.transfer.kind;
   const auto refuse = [&](const std::string& value, const std::string& why,

@@ -65,6 +65,9 @@ ResultTable in_columns_of(const ResultTable& columns, const ResultTable& table) 
   return same;
 }
 
+// Rows from which on time and memory are worth saving.
+constexpr std::size_t kManyRows = 10'000;
+
 // The comparison while it is made.
 class Maker {
  public:
@@ -239,18 +242,21 @@ void Maker::note_film_point_errors() {
   const double of_force = allowed(layout.Fh()), of_moment = allowed(layout.Th(0));
   constexpr double kMillimetre = 1e-3;
   constexpr double kAnyPoint = 1e300;  // mm
-  film_point_errors_ = r.analytic;
-  std::fill(film_point_errors_.values.begin(), film_point_errors_.values.end(), 0.0);
+  film_point_errors_ = select_channels(r.analytic, [](const Channel& channel) {
+    return channel.quantity == "xh" || channel.quantity == "yh";
+  });
   for (std::size_t row = 0; row < r.analytic.rows(); ++row) {
     const double force = std::abs(r.analytic.at(row, layout.Fh()));
-    if (!is_computed(force) || force == 0) continue;
+    const bool has_point = is_computed(force) && force != 0;
     // A force within its own error has no point of application that could be compared.
     const double least = force - of_force;
-    for (const std::size_t column : {layout.xh(), layout.yh()}) {
-      const double at = std::abs(r.analytic.at(row, column));
-      if (is_computed(at))
-        film_point_errors_.values[row * film_point_errors_.columns() + column] =
-            least > 0 ? (of_moment / kMillimetre + at * of_force) / least : kAnyPoint;
+    for (std::size_t column = 0; column < film_point_errors_.columns(); ++column) {
+      double& value = film_point_errors_.values[row * film_point_errors_.columns() + column];
+      const double at = std::abs(value);
+      if (!has_point || !is_computed(at))
+        value = 0;
+      else
+        value = least > 0 ? (of_moment / kMillimetre + at * of_force) / least : kAnyPoint;
     }
   }
 }
@@ -392,10 +398,40 @@ void Maker::split_assumptions() {
           zero_scales_);
 }
 
+// Rcs and Tcs alone of a run: of many rows part by part, so that no more than a part is ever held
+// in all its columns.
+ResultTable torque_of_gear(const PreparedCase& ready, const Samples& samples,
+                           const RunOptions& options, const PartProgress& progress_of) {
+  const auto wanted = [](const Channel& channel) {
+    return channel.quantity == "Rcs" || channel.quantity == "Tcs";
+  };
+  const std::size_t rows = samples.theta_deg.size();
+  std::optional<Progress> told;
+  ResultTable whole;
+  for (std::size_t first = 0; first < rows; first += kManyRows) {
+    const Samples part = samples.part(first, kManyRows);
+    const auto of_part = [&](const std::string& name) {
+      if (!told) told = progress_of(name);
+      return !*told ? Progress() : Progress([&](double done) {
+        (*told)((static_cast<double>(first) + done * static_cast<double>(part.theta_deg.size())) /
+                static_cast<double>(rows));
+      });
+    };
+    ResultTable torque = select_channels(study::run(ready, part, options, of_part).table, wanted);
+    if (first == 0) {
+      whole = std::move(torque);
+      continue;
+    }
+    whole.theta_deg.insert(whole.theta_deg.end(), torque.theta_deg.begin(), torque.theta_deg.end());
+    whole.values.insert(whole.values.end(), torque.values.begin(), torque.values.end());
+    whole.provenance.seconds += torque.provenance.seconds;
+  }
+  return whole;
+}
+
 // Both models, and both without the viscous torque, which takes as long: side by side where that is
 // seconds. Of short runs the time is reported, so nothing runs beside them.
 void Maker::run_all() {
-  constexpr std::size_t kManyRows = 10'000;
   if (integrated() || samples_.theta_deg.size() < kManyRows) {
     run_models();
     run_without_viscous(progress_of_);
@@ -442,15 +478,10 @@ void Maker::run_without_viscous(const PartProgress& progress_of) {
     PressureTrace pressure(the_case.pressure);
     return PreparedCase{std::move(the_case), {}, std::move(pressure)};
   };
-  const auto shown = [](const ModelRun& run) {
-    return select_channels(run.table, [](const Channel& channel) {
-      return channel.quantity == "Rcs" || channel.quantity == "Tcs";
-    });
-  };
   const auto named = [&](const std::string& part) { return progress_of(part + ", Cc = 0"); };
-  r.without_viscous.push_back(shown(study::run(still(r.first), samples_, {}, named)));
+  r.without_viscous.push_back(torque_of_gear(still(r.first), samples_, {}, named));
   r.without_viscous.push_back(
-      shown(study::run(still(r.second), multibody_samples_, multibody_run(0), named)));
+      torque_of_gear(still(r.second), multibody_samples_, multibody_run(0), named));
 }
 
 // Both models held to a reference: what was asked for and computed.

@@ -86,7 +86,8 @@ struct Options {
   ZeroScales zero_scales;
   double most_digits = 16;   ///< of agreement that can be claimed: those of the poorer table
   std::optional<Band> band;  ///< a difference is then the distance from the band
-  /// How far each value of the first table may be off, in its unit: a table of its shape.
+  /// How far values of the first table may be off, in their unit: a table of its rows. A channel
+  /// that it has no column of is not off.
   const ResultTable* uncertainty = nullptr;
   /// Whether a value of a channel may be missing at a row: then the channel is not computed,
   /// without it incomplete. Where this is not given, a value may be missing in both tables, not in

@@ -21,6 +21,8 @@ struct Samples {
   /// Copies sample `row` into `instant`. theta is reduced to one turn first, exactly.
   /// @throws InputError where there is no such row, or not a pressure for each of its pistons
   void instant(std::size_t row, Instant& instant) const;
+  /// `count` rows from `first` on, or as many as there are.
+  Samples part(std::size_t first, std::size_t count) const;
 };
 
 /// Which part of a run is wanted: all of it, unless it is too long to hold.
