@@ -251,6 +251,7 @@ ResultTable run_budget(const Case& the_case, const Assumptions& assumptions, con
   PlacedSamples placed(placing, the_case);
   Instant instant;
   const std::size_t count = samples.theta_deg.size();
+  table.reserve_rows(count);
   for (std::size_t row = 0; row < count; ++row) {
     samples.instant(row, instant);
     append_budget(table, samples.theta_deg[row], model.evaluate(placed.at(instant)));

@@ -91,8 +91,10 @@ ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, con
   }
   std::size_t next = 0;
   if (loads != nullptr) *loads = BodyLoadTable::of(samples.theta_deg.size());
-  if (budget != nullptr)
+  if (budget != nullptr) {
     *budget = budget_table("multibody", has_ring_off_b(the_case.pump), model.has_teeth());
+    budget->reserve_rows(samples.theta_deg.size());
+  }
   if (teeth != nullptr) {
     *teeth = teeth_table("multibody");
     if (!model.has_teeth()) teeth = nullptr;

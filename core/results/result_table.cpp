@@ -72,7 +72,7 @@ ResultTable tabulate(const std::string& name, const ChannelLayout& layout, const
   table.name = name;
   table.channels = layout.channels();
   table.theta_deg = samples.theta_deg;
-  table.values.reserve(table.rows() * table.columns());
+  table.reserve_rows(samples.theta_deg.size());
   evaluate_rows(
       name, layout, samples, evaluate,
       [&](double, const std::vector<double>& row) {
@@ -108,7 +108,7 @@ ResultTable select_channels(const ResultTable& table,
       columns.push_back(column);
       selected.channels.push_back(table.channels[column]);
     }
-  selected.values.reserve(table.rows() * columns.size());
+  selected.reserve_rows(table.rows());
   for (std::size_t row = 0; row < table.rows(); ++row)
     for (const std::size_t column : columns) selected.values.push_back(table.at(row, column));
   return selected;

@@ -29,6 +29,11 @@ struct ResultTable {
   std::vector<double> values;  ///< row-major, theta_deg.size() x channels.size()
   Provenance provenance;
 
+  /// Room for so many rows in all: appended one by one they then take no more than they need.
+  void reserve_rows(std::size_t count) {
+    theta_deg.reserve(count);
+    values.reserve(count * columns());
+  }
   std::size_t rows() const { return theta_deg.size(); }
   std::size_t columns() const { return channels.size(); }
   double at(std::size_t row, std::size_t column) const { return values[row * columns() + column]; }
