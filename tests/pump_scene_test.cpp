@@ -111,8 +111,12 @@ class Reader {
       if (!body.contains("from")) return {vector(body["origin"]), axes};
       const Vector3d from = place(body["from"], row, 0);
       const Vector3d to = place(body["to"], row, 0);
+      // Turned the shortest way from z.
+      const Vector3d axis = Vector3d::UnitZ().cross(to - from);
+      const double angle = std::atan2(axis.norm(), (to - from).z());
       return {from,
-              Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), to - from).toRotationMatrix()};
+              Eigen::AngleAxisd(angle, axis.norm() > 0 ? axis.normalized() : Vector3d::UnitX())
+                  .toRotationMatrix()};
     }
     ADD_FAILURE() << "no body " << name;
     return {};
