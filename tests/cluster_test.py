@@ -211,7 +211,7 @@ class ClusterTest(unittest.TestCase):
         (cls.shared / "bin/bentaxis").symlink_to(PROGRAM)
         cls.write_sweep(cls.shared)
         cls.expected = cls.alone(cls.shared)
-        cls.mpi = "libmpi" in subprocess.run(["ldd", PROGRAM], capture_output=True, text=True).stdout
+        cls.mpi = "MPI none" not in subprocess.run([PROGRAM, "--version"], capture_output=True, text=True).stdout
 
     def setUp(self):
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="bentaxis_")))

@@ -204,6 +204,13 @@ class UsageTest(ProgramTest):
         self.assertEqual(first, f"bentaxis {version}")
         self.assertTrue(second.startswith("optional parts: Ceres "), second)
 
+    def test_starts_without_the_libraries_that_few_commands_need(self):
+        """Each brings others, up to forty, that every start would load: they are linked with modules."""
+        shown = subprocess.run(["ldd", PROGRAM], capture_output=True, text=True, check=True).stdout
+        self.assertIn("libSimTKsimbody", shown)
+        for library in ("libmatio", "libhdf5", "libcurl", "libmpi", "libcholmod", "libglog", "libOT", "libpagmo", "libmujoco", "libdart"):
+            self.assertNotIn(library, shown)
+
     def test_help_names_every_option_of_the_interface(self):
         for command, options in (("run", "--model --out --way --scene --gear --integrator --accuracy"),
                                  ("compare", "--out --tolerance")):

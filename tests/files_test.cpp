@@ -28,6 +28,8 @@
 #include "bentaxis/files/input_file.h"
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/files/kept_case.h"
+#include "bentaxis/files/module.h"
+#include "bentaxis/files/module_folders.h"
 #include "bentaxis/files/new_folder.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/files/run_lock.h"
@@ -51,6 +53,26 @@ std::vector<std::string> lines_of(const std::string& text) {
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   return lines;
+}
+
+TEST(ModuleTest, WhatIsMissingIsNamedWithTheFoldersThatWereSearched) {
+  const Module module("absent_module.so");
+  EXPECT_EQ(module.function<void()>("anything"), nullptr);
+  try {
+    module.table<int>("numbers", "MATLAB files");
+    FAIL() << "a table of a module that is not there";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("MATLAB files: the module absent_module.so"),
+                                    HasSubstr(module_folders().front().lexically_normal().string()),
+                                    HasSubstr("build or install")));
+  }
+}
+
+TEST(ModuleTest, ATableThatAModuleLacksIsRefused) {
+  const Module module("bentaxis_matio.so");
+  EXPECT_EQ(module.why(), "");
+  EXPECT_NO_THROW(module.table<int>("bentaxis_matio_functions", "MATLAB files"));
+  EXPECT_THROW(module.table<int>("bentaxis_hdf5_functions", "sweep.h5"), InputError);
 }
 
 class OutputFolderTest : public testing::Test {

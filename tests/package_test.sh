@@ -30,7 +30,7 @@ field() { dpkg-deb -f "$package" "$1"; }
 [[ $(field Package) == bentaxis ]]
 [[ $(field Version) == $(sed -n 's/^CMAKE_PROJECT_VERSION:STATIC=//p' "$build/CMakeCache.txt") ]]
 # What is linked, and what is loaded at run time.
-for library in libsimbody librsvg2-2 libtbb libpugixml $(grep -q dist-packages content && echo python3-numpy); do
+for library in libsimbody librsvg2-2 libtbb libpugixml libmatio $(grep -q dist-packages content && echo python3-numpy); do
   grep -q "$library" <<< "$(field Depends)" || { echo "Depends lacks $library: $(field Depends)"; exit 1; }
 done
 # A maintainer and a home page are true or not there: no address that stands for one.

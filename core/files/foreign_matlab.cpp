@@ -1,17 +1,22 @@
 // MATLAB files: vectors and columns of matrices of the same length, in structures too.
-#include <matio.h>
-
 #include <charconv>
 #include <cmath>
 #include <map>
 #include <memory>
 
+#include "bentaxis/files/module.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "foreign_grid.h"
+#include "matio_module.h"
 
 namespace bentaxis::foreign {
 namespace {
+
+const MatioFunctions& matio() {
+  static const Module loaded(BENTAXIS_MATIO_MODULE);
+  return loaded.table<MatioFunctions>("bentaxis_matio_functions", "MATLAB files");
+}
 
 struct Column {
   std::string name;
@@ -86,12 +91,12 @@ void collect(const matvar_t* variable, const std::string& name, int depth, Found
   for (int i = 0; i < variable->rank; ++i) count *= variable->dims[i];
   if (variable->class_type == MAT_C_STRUCT) {
     auto* mutable_variable = const_cast<matvar_t*>(variable);
-    const auto fields = Mat_VarGetNumberOfFields(mutable_variable);
-    char* const* names = Mat_VarGetStructFieldnames(mutable_variable);
+    const auto fields = matio().number_of_fields(mutable_variable);
+    char* const* names = matio().field_names(mutable_variable);
     for (std::size_t element = 0; element < count; ++element)
       for (unsigned field = 0; field < fields; ++field)
         collect(
-            Mat_VarGetStructFieldByIndex(mutable_variable, field, element),
+            matio().field(mutable_variable, field, element),
             name + (count > 1 ? "(" + std::to_string(element + 1) + ")" : "") + "." + names[field],
             depth + 1, found);
     return;
@@ -148,15 +153,15 @@ ForeignTable read_matlab(const std::filesystem::path& file, const std::string& c
                          const std::string& wanted) {
   const auto fail = [&](const std::string& why) { throw InputError(file.string() + ": " + why); };
   check_matlab_structure(file, content);
-  Mat_LogInit("bentaxis");
-  Mat_LogInitFunc("bentaxis", [](int, char*) {});  // what is wrong is said below
-  const std::unique_ptr<mat_t, int (*)(mat_t*)> in(Mat_Open(file.c_str(), MAT_ACC_RDONLY),
-                                                   Mat_Close);
+  matio().log_init("bentaxis");
+  matio().log_init_func("bentaxis", [](int, char*) {});  // what is wrong is said below
+  const std::unique_ptr<mat_t, int (*)(mat_t*)> in(matio().open(file.c_str(), MAT_ACC_RDONLY),
+                                                   matio().close);
   if (!in) fail("is not a MATLAB file, or it is damaged");
   Found found;
   std::string names;
-  while (matvar_t* next = Mat_VarReadNext(in.get())) {
-    const std::unique_ptr<matvar_t, void (*)(matvar_t*)> variable(next, Mat_VarFree);
+  while (matvar_t* next = matio().read_next(in.get())) {
+    const std::unique_ptr<matvar_t, void (*)(matvar_t*)> variable(next, matio().free);
     const std::string name = next->name == nullptr ? "" : next->name;
     if (name.empty() || name.front() == '#' || name.rfind("__", 0) == 0) continue;
     names += (names.empty() ? "" : ", ") + name;

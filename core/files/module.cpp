@@ -1,22 +1,35 @@
-#include "module.h"
+#include "bentaxis/files/module.h"
 
 #include <dlfcn.h>
 
 #include "bentaxis/files/module_folders.h"
+#include "bentaxis/pump/error.h"
 
-namespace bentaxis::designs {
+namespace bentaxis {
 
-Module::Module(const std::string& file) {
+Module::Module(const std::string& file) : file_(file) {
   if (file.empty()) return;
   for (const std::filesystem::path& folder : module_folders())
     if (library_ == nullptr && std::filesystem::exists(folder / file)) {
       library_ = dlopen((folder / file).c_str(), RTLD_NOW | RTLD_LOCAL);
       if (library_ == nullptr) why_ = dlerror();
     }
+  // A program with the installed library in it has its modules in its search path.
+  if (library_ == nullptr && why_.empty()) library_ = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
 }
 
 void* Module::symbol(const char* name) const {
   return library_ == nullptr ? nullptr : dlsym(library_, name);
 }
 
-}  // namespace bentaxis::designs
+void Module::missing(const std::string& what) const {
+  std::string folders;
+  for (const std::filesystem::path& folder : module_folders())
+    folders += (folders.empty() ? "" : ", ") + folder.lexically_normal().string();
+  throw InputError(
+      what + ": the module " + file_ +
+      (why_.empty() ? " is in none of the folders " + folders : " cannot be loaded: " + why_) +
+      "; build or install all of bentaxis again");
+}
+
+}  // namespace bentaxis

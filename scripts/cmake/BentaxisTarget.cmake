@@ -62,12 +62,16 @@ function(bentaxis_library room)
 endfunction()
 
 # What is linked with a large library is a file of its own, loaded when it is wanted (files/module_folders.h):
-#   bentaxis_module(<name> FOR <target> SOURCES <source>.. LIBRARIES <library>..)
+#   bentaxis_module(<name> FOR <target> SOURCES <source>.. LIBRARIES <library>.. [ALL_NEEDED])
+# ALL_NEEDED: also libraries that none of its calls needs, as C's own where it only hands functions on.
 function(bentaxis_module name)
-  cmake_parse_arguments(ARG "" "FOR" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "ALL_NEEDED" "FOR" "SOURCES;LIBRARIES" ${ARGN})
   add_library(${name} MODULE ${ARG_SOURCES})
   bentaxis_target(${name} 20)
   set_target_properties(${name} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/modules)
+  if(ARG_ALL_NEEDED)
+    target_link_options(${name} PRIVATE LINKER:--no-as-needed)
+  endif()
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES})
   add_dependencies(${ARG_FOR} ${name})
   install(TARGETS ${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/bentaxis)

@@ -12,8 +12,10 @@
 #include "row_major.h"
 
 #ifdef BENTAXIS_HAS_CERES
-#include <ceres/ceres.h>
 #include <ceres/version.h>
+
+#include "bentaxis/files/module.h"
+#include "ceres_module.h"
 #endif
 
 namespace bentaxis::designs {
@@ -127,49 +129,11 @@ bool derivatives_of(const LeastSquaresProblem& problem, std::span<const double> 
 #ifdef BENTAXIS_HAS_CERES
 namespace {
 
-// All residuals as one block, of parameters over their scale: so that a step that is small is small
-// for every one of them.
-class AllResiduals final : public ceres::CostFunction {
- public:
-  AllResiduals(const LeastSquaresProblem& problem, std::vector<double> units)
-      : problem_(problem), units_(std::move(units)) {
-    set_num_residuals(static_cast<int>(problem.residuals));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.parameters));
-  }
-
-  bool Evaluate(const double* const* parameters, double* residuals,
-                double** jacobians) const override {
-    const std::size_t n = problem_.parameters, m = problem_.residuals;
-    std::vector<double> x(n);
-    for (std::size_t i = 0; i < n; ++i) x[i] = parameters[0][i] * units_[i];
-    if (!problem_.evaluate(x, {residuals, m})) return false;
-    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-    if (!derivatives_of(problem_, x, {jacobians[0], m * n})) return false;
-    for (std::size_t r = 0; r < m; ++r)
-      for (std::size_t i = 0; i < n; ++i) jacobians[0][r * n + i] *= units_[i];
-    return true;
-  }
-
- private:
-  const LeastSquaresProblem& problem_;
-  std::vector<double> units_;
-};
-
-// Ends the search once steps change the sum of squares by no more than is asked for.
-class EnoughIsEnough final : public ceres::IterationCallback {
- public:
-  explicit EnoughIsEnough(double enough) : enough_(enough) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    if (summary.iteration == 0 || !summary.step_is_successful) return ceres::SOLVER_CONTINUE;
-    constexpr int kTimes = 2;
-    times_ = 2 * summary.cost_change <= enough_ ? times_ + 1 : 0;  // the cost is half the sum
-    return times_ >= kTimes ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  double enough_;
-  int times_ = 0;
-};
+// Ceres brings SuiteSparse, METIS and gflags: fifteen libraries, loaded where something is fitted.
+auto* ceres_solver() {
+  static const Module loaded(BENTAXIS_CERES_MODULE);
+  return loaded.table<decltype(&bentaxis_ceres_solve)>("bentaxis_ceres_solver", "least squares");
+}
 
 // Gauss-Newton steps, shortest where the data leave a choice, of the parameters that no bound
 // holds. Where Ceres stops, the sum of squares is right to round-off, the parameters to half as
@@ -235,34 +199,33 @@ LeastSquaresFit least_squares(const LeastSquaresProblem& problem, std::span<cons
     units[i] = size_of(problem, i, fit.x[i]);
     u[i] = fit.x[i] / units[i];
   }
-  ceres::Problem ceres_problem;
-  ceres_problem.AddResidualBlock(new AllResiduals(problem, units), nullptr, u.data());
+  CeresTask task;
+  task.residuals = problem.residuals;
+  task.options = options;
   for (std::size_t i = 0; i < n && !problem.low.empty(); ++i) {
-    ceres_problem.SetParameterLowerBound(u.data(), static_cast<int>(i), problem.low[i] / units[i]);
-    ceres_problem.SetParameterUpperBound(u.data(), static_cast<int>(i), problem.high[i] / units[i]);
+    task.low.push_back(problem.low[i] / units[i]);
+    task.high.push_back(problem.high[i] / units[i]);
   }
-  ceres::Solver::Options ceres_options;
-  ceres_options.linear_solver_type = ceres::DENSE_QR;
-  ceres_options.max_num_iterations = options.most_iterations;
-  ceres_options.function_tolerance = options.tolerance;
-  ceres_options.parameter_tolerance = options.tolerance;
-  ceres_options.gradient_tolerance = 0;  // of no scale that all problems share
-  ceres_options.min_trust_region_radius = 1e-40;
-  ceres_options.max_num_consecutive_invalid_steps = 30;
-  ceres_options.logging_type = ceres::SILENT;
-  EnoughIsEnough enough(options.enough);
-  if (options.enough > 0) ceres_options.callbacks.push_back(&enough);
-  ceres::Solver::Summary summary;
-  ceres::Solve(ceres_options, &ceres_problem, &summary);
+  task.evaluate = [&](const double* at, double* residuals, double* jacobian) {
+    const std::size_t m = problem.residuals;
+    std::vector<double> x(n);
+    for (std::size_t i = 0; i < n; ++i) x[i] = at[i] * units[i];
+    if (!problem.evaluate(x, {residuals, m})) return false;
+    if (jacobian == nullptr) return true;
+    if (!derivatives_of(problem, x, {jacobian, m * n})) return false;
+    for (std::size_t r = 0; r < m; ++r)
+      for (std::size_t i = 0; i < n; ++i) jacobian[r * n + i] *= units[i];
+    return true;
+  };
+  const CeresEnd end = ceres_solver()(task, u);
   // Times its unit a bound may come out a rounding beyond itself.
   for (std::size_t i = 0; i < n; ++i) {
     fit.x[i] = u[i] * units[i];
     if (!problem.low.empty()) fit.x[i] = std::clamp(fit.x[i], problem.low[i], problem.high[i]);
   }
-  fit.converged = summary.termination_type == ceres::CONVERGENCE ||
-                  summary.termination_type == ceres::USER_SUCCESS;
-  fit.message = summary.message;
-  fit.iterations = static_cast<int>(summary.iterations.size());
+  fit.converged = end.converged;
+  fit.message = end.message;
+  fit.iterations = end.iterations;
   fit.jacobian.resize(problem.residuals * n);
   if (!problem.evaluate(fit.x, fit.residuals) || !derivatives_of(problem, fit.x, fit.jacobian))
     throw ComputationError("least squares: the model cannot be computed at the solution");

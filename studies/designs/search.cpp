@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bentaxis/designs/points.h"
+#include "bentaxis/files/module.h"
 #include "bentaxis/pump/error.h"
 
 #ifdef BENTAXIS_HAS_SEARCH
@@ -15,7 +16,6 @@
 #include <nlopt.hpp>
 #include <pagmo/config.hpp>  // its version: the library is linked with search_module.cpp
 
-#include "module.h"
 #include "search_module.h"
 #endif
 

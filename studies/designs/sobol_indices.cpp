@@ -6,10 +6,10 @@
 
 #include "bentaxis/designs/points.h"
 #include "bentaxis/designs/propagation.h"
+#include "bentaxis/files/module.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/reporting.h"
-#include "module.h"
 #include "sobol_module.h"
 
 namespace bentaxis::designs {

@@ -5,35 +5,46 @@
 
 #ifdef BENTAXIS_HAS_HDF5
 
-#include <hdf5.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <string>
 #include <utility>
 
+#include "bentaxis/files/module.h"
+#include "hdf5_module.h"
+
 namespace bentaxis::designs {
 
 bool has_hdf5() { return true; }
 
-namespace {
-
-// At the end of the program the library would write once more what it could not write before, and
-// fail so that the program crashes. Files that are closed have all of theirs. Counts only before
-// anything else is called.
-void leave_at_exit() { H5dont_atexit(); }
-
-}  // namespace
-
 std::string hdf5_version() {
-  leave_at_exit();
-  unsigned major = 0, minor = 0, release = 0;
-  H5get_libversion(&major, &minor, &release);
-  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
+  return std::to_string(H5_VERS_MAJOR) + "." + std::to_string(H5_VERS_MINOR) + "." +
+         std::to_string(H5_VERS_RELEASE);
 }
 
 namespace {
+
+// The library brings curl, OpenSSL and LDAP: forty others, loaded where HDF5 is written.
+const Hdf5Functions& hdf5() {
+  static const Module loaded(BENTAXIS_HDF5_MODULE);
+  static const Hdf5Functions& functions =
+      loaded.table<Hdf5Functions>("bentaxis_hdf5_functions", "sweep.h5");
+  return functions;
+}
+
+// Starts the library. At the end of the program it would write once more what it could not write
+// before, and fail so that the program crashes. Files that are closed have all of theirs. Counts
+// only before anything else is called.
+const Hdf5Ids& hdf5_ids() {
+  static const Hdf5Ids ids = [] {
+    hdf5().dont_atexit();
+    Hdf5Ids found{};
+    hdf5().ids(&found);
+    return found;
+  }();
+  return ids;
+}
 
 constexpr hsize_t kChunk = 16384;  // rows
 
@@ -72,58 +83,61 @@ void must(herr_t status) {
 }
 
 Handle text_type() {
-  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  must(H5Tset_size(*type, H5T_VARIABLE));
-  must(H5Tset_cset(*type, H5T_CSET_UTF8));
+  Handle type(hdf5().Tcopy(hdf5_ids().text), hdf5().Tclose);
+  must(hdf5().Tset_size(*type, H5T_VARIABLE));
+  must(hdf5().Tset_cset(*type, H5T_CSET_UTF8));
   return type;
 }
 
 void attribute(hid_t object, const char* name, const std::string& value) {
-  const Handle type = text_type(), space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle made(H5Acreate2(object, name, *type, *space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const Handle type = text_type(), space(hdf5().Screate(H5S_SCALAR), hdf5().Sclose);
+  const Handle made(hdf5().Acreate2(object, name, *type, *space, H5P_DEFAULT, H5P_DEFAULT),
+                    hdf5().Aclose);
   const char* const text = value.c_str();
-  must(H5Awrite(*made, *type, &text));
+  must(hdf5().Awrite(*made, *type, &text));
 }
 
 void attribute(hid_t object, const char* name, double value) {
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle made(H5Acreate2(object, name, H5T_IEEE_F64LE, *space, H5P_DEFAULT, H5P_DEFAULT),
-                    H5Aclose);
-  must(H5Awrite(*made, H5T_NATIVE_DOUBLE, &value));
+  const Handle space(hdf5().Screate(H5S_SCALAR), hdf5().Sclose);
+  const Handle made(
+      hdf5().Acreate2(object, name, hdf5_ids().stored_double, *space, H5P_DEFAULT, H5P_DEFAULT),
+      hdf5().Aclose);
+  must(hdf5().Awrite(*made, hdf5_ids().native_double, &value));
 }
 
 // Without times, so that equal results are equal files; members in the order they were made in.
 Handle group(hid_t parent, const char* name) {
-  const Handle how(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
-  must(H5Pset_obj_track_times(*how, false));
-  must(H5Pset_link_creation_order(*how, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
-  return {H5Gcreate2(parent, name, H5P_DEFAULT, *how, H5P_DEFAULT), H5Gclose};
+  const Handle how(hdf5().Pcreate(hdf5_ids().group_creation), hdf5().Pclose);
+  must(hdf5().Pset_obj_track_times(*how, false));
+  must(hdf5().Pset_link_creation_order(*how, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
+  return {hdf5().Gcreate2(parent, name, H5P_DEFAULT, *how, H5P_DEFAULT), hdf5().Gclose};
 }
 
 Handle data_set(hid_t parent, const std::string& name, hid_t type,
                 const std::vector<hsize_t>& extent, Packing packing) {
   const auto rank = static_cast<int>(extent.size());
-  const Handle space(H5Screate_simple(rank, extent.data(), nullptr), H5Sclose);
-  const Handle how(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  must(H5Pset_obj_track_times(*how, false));
+  const Handle space(hdf5().Screate_simple(rank, extent.data(), nullptr), hdf5().Sclose);
+  const Handle how(hdf5().Pcreate(hdf5_ids().data_set_creation), hdf5().Pclose);
+  must(hdf5().Pset_obj_track_times(*how, false));
   if (extent[0] > 0) {
     std::vector<hsize_t> chunk = extent;
     chunk[0] = std::min(chunk[0], kChunk);
-    must(H5Pset_chunk(*how, rank, chunk.data()));
+    must(hdf5().Pset_chunk(*how, rank, chunk.data()));
     if (packing == Packing::light) {
-      if (H5Tis_variable_str(type) <= 0) must(H5Pset_shuffle(*how));
-      must(H5Pset_deflate(*how, 1));
+      if (hdf5().Tis_variable_str(type) <= 0) must(hdf5().Pset_shuffle(*how));
+      must(hdf5().Pset_deflate(*how, 1));
     }
   }
-  return {H5Dcreate2(parent, name.c_str(), type, *space, H5P_DEFAULT, *how, H5P_DEFAULT), H5Dclose};
+  return {hdf5().Dcreate2(parent, name.c_str(), type, *space, H5P_DEFAULT, *how, H5P_DEFAULT),
+          hdf5().Dclose};
 }
 
 // Rows [first, first + count) of a data set with one column.
 void write_rows(const Handle& set, hid_t type, hsize_t first, hsize_t count, const void* rows) {
-  const Handle file(H5Dget_space(*set), H5Sclose);
-  const Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
-  must(H5Sselect_hyperslab(*file, H5S_SELECT_SET, &first, nullptr, &count, nullptr));
-  must(H5Dwrite(*set, type, *memory, *file, H5P_DEFAULT, rows));
+  const Handle file(hdf5().Dget_space(*set), hdf5().Sclose);
+  const Handle memory(hdf5().Screate_simple(1, &count, nullptr), hdf5().Sclose);
+  must(hdf5().Sselect_hyperslab(*file, H5S_SELECT_SET, &first, nullptr, &count, nullptr));
+  must(hdf5().Dwrite(*set, type, *memory, *file, H5P_DEFAULT, rows));
 }
 
 }  // namespace
@@ -139,7 +153,7 @@ struct Hdf5File::Implementation {
         outputs(sweep.plan().outputs.size()),
         file(open(path)),
         reason_type(text_type()) {
-    const Handle root(H5Gopen2(*file, "/", H5P_DEFAULT), H5Gclose);
+    const Handle root(hdf5().Gopen2(*file, "/", H5P_DEFAULT), hdf5().Gclose);
     attribute(*root, "title", "designs of a pump and their computed outputs");
     attribute(*root, "case", record.case_text);
     attribute(*root, "plan", record.plan);
@@ -148,7 +162,7 @@ struct Hdf5File::Implementation {
     const Handle designs = group(*file, "designs"), results = group(*file, "outputs");
     for (const Varied& v : sweep.plan().varied) {
       columns.push_back(
-          data_set(*designs, v.variable.name(), H5T_IEEE_F64LE, extent, Packing::light));
+          data_set(*designs, v.variable.name(), hdf5_ids().stored_double, extent, Packing::light));
       attribute(*columns.back(), "unit", v.variable.unit());
       attribute(*columns.back(), "meaning", v.variable.meaning());
       attribute(*columns.back(), "symbol", v.variable.symbol());
@@ -157,7 +171,8 @@ struct Hdf5File::Implementation {
       if (!words.empty()) attribute(*columns.back(), "words", words);
     }
     for (const Output& o : sweep.plan().outputs) {
-      columns.push_back(data_set(*results, o.name, H5T_IEEE_F64LE, extent, Packing::none));
+      columns.push_back(
+          data_set(*results, o.name, hdf5_ids().stored_double, extent, Packing::none));
       attribute(*columns.back(), "unit", o.unit);
       attribute(*columns.back(), "meaning", o.meaning);
     }
@@ -166,11 +181,11 @@ struct Hdf5File::Implementation {
   }
 
   static Handle open(const std::filesystem::path& path) {
-    leave_at_exit();
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are said by this program
-    const Handle how(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-    must(H5Pset_obj_track_times(*how, false));
-    return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, *how, H5P_DEFAULT), H5Fclose};
+    hdf5_ids();
+    hdf5().Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are said by this program
+    const Handle how(hdf5().Pcreate(hdf5_ids().file_creation), hdf5().Pclose);
+    must(hdf5().Pset_obj_track_times(*how, false));
+    return {hdf5().Fcreate(path.c_str(), hdf5_ids().overwrite, *how, H5P_DEFAULT), hdf5().Fclose};
   }
 
   void check_columns(const char* name, const std::vector<SweepCheck>& checks, std::size_t outputs_,
@@ -178,8 +193,8 @@ struct Hdf5File::Implementation {
     std::vector<double> all;
     for (const SweepCheck& c : checks) all.insert(all.end(), (c.*which).begin(), (c.*which).end());
     const Handle set =
-        data_set(*parent, name, H5T_IEEE_F64LE, {checks.size(), outputs_}, Packing::none);
-    must(H5Dwrite(*set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()));
+        data_set(*parent, name, hdf5_ids().stored_double, {checks.size(), outputs_}, Packing::none);
+    must(hdf5().Dwrite(*set, hdf5_ids().native_double, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()));
     attribute(*set, "columns", "as /outputs, in the order of the plan");
   }
 };
@@ -194,7 +209,7 @@ void Hdf5File::add(const SweepBlock& block) {
   const auto write = [&](const Handle& set, const std::vector<double>& rows, std::size_t which,
                          std::size_t width) {
     for (std::size_t i = 0; i < block.designs; ++i) column[i] = rows[i * width + which];
-    write_rows(set, H5T_NATIVE_DOUBLE, block.first, block.designs, column.data());
+    write_rows(set, hdf5_ids().native_double, block.first, block.designs, column.data());
   };
   for (std::size_t i = 0; i < it.variables; ++i)
     write(it.columns[i], block.values, i, it.variables);
@@ -215,13 +230,15 @@ void Hdf5File::finish(const std::vector<SweepCheck>& checks) {
     attribute(*parent, "tolerance", kCheckTolerance);
     std::vector<double> designs;
     for (const SweepCheck& c : checks) designs.push_back(static_cast<double>(c.design));
-    const Handle set = data_set(*parent, "design", H5T_STD_U64LE, {checks.size()}, Packing::none);
-    must(H5Dwrite(*set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, designs.data()));
+    const Handle set =
+        data_set(*parent, "design", hdf5_ids().stored_integer, {checks.size()}, Packing::none);
+    must(hdf5().Dwrite(*set, hdf5_ids().native_double, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                       designs.data()));
     it.check_columns("own", checks, it.outputs, &SweepCheck::own, parent);
     it.check_columns("other", checks, it.outputs, &SweepCheck::values, parent);
     it.check_columns("scale", checks, it.outputs, &SweepCheck::scales, parent);
   }
-  must(H5Fflush(*it.file, H5F_SCOPE_GLOBAL));
+  must(hdf5().Fflush(*it.file, H5F_SCOPE_GLOBAL));
   implementation_.reset();
 }
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace bentaxis::designs {
+namespace bentaxis {
 
 class Module {
  public:
@@ -16,14 +16,23 @@ class Module {
   Function* function(const char* name) const {
     return reinterpret_cast<Function*>(symbol(name));
   }
+  /// A table of functions of the module by its name.
+  /// @throws InputError where the module or the table is missing: which file, for what, and why
+  template <class Table>
+  const Table& table(const char* name, const std::string& what) const {
+    if (symbol(name) == nullptr) missing(what);
+    return *static_cast<const Table*>(symbol(name));
+  }
   /// Why the module could not be loaded; "" where there is none.
   const std::string& why() const { return why_; }
 
  private:
   void* symbol(const char* name) const;
+  [[noreturn]] void missing(const std::string& what) const;
 
+  std::string file_;
   void* library_ = nullptr;
   std::string why_;
 };
 
-}  // namespace bentaxis::designs
+}  // namespace bentaxis
