@@ -21,7 +21,13 @@ if cmake -S "$source_dir/tests/install/components" -B "$scratch/unknown" -DCMAKE
 fi
 grep -q 'no component "analitic": there are pump' <(tr -s '\n ' ' ' < "$scratch/log") || { cat "$scratch/log"; exit 1; }
 cd "$scratch"
-"$scratch/build/uses_bentaxis" "$source_dir/cases/bap63_rated.toml" "$source_dir/cases/bap63_rated_hydraulic.toml"
+LD_DEBUG=files LD_DEBUG_OUTPUT=$scratch/loaded \
+  "$scratch/build/uses_bentaxis" "$source_dir/cases/bap63_rated.toml" "$source_dir/cases/bap63_rated_hydraulic.toml"
+# It sweeps; HDF5 is written by a module, which stands where the library was installed.
+if [[ -f $build/modules/bentaxis_hdf5.so ]]; then
+  grep -q "calling init: $scratch/usr/lib/bentaxis/bentaxis_hdf5.so" loaded.* ||
+    { echo "a program with the installed library does not find its modules"; exit 1; }
+fi
 share=usr/share
 for file in doc/bentaxis/{LICENSE,README.md,CHANGELOG.md,docs/command_line.md} man/man1/bentaxis.1.gz \
     bash-completion/completions/bentaxis zsh/site-functions/_bentaxis fish/vendor_completions.d/bentaxis.fish; do

@@ -94,6 +94,22 @@ class SweepTest(ProgramTest):
         self.assertEqual({row["agrees"] for row in checks}, {"1"})
         self.assertIn("30 infeasible", json.loads((self.folder / "out" / "report.json").read_text())["verdict"]["headline"])
 
+    def test_a_program_without_its_modules_writes_csv(self):
+        if not self.has("HDF5"):
+            self.skipTest("built without HDF5")
+        (self.folder / "bin").mkdir()
+        alone = shutil.copy(program.PROGRAM, self.folder / "bin/bentaxis")
+
+        def run(*arguments):
+            return subprocess.run([alone, *map(str, self.command(*arguments))], cwd=self.folder, capture_output=True, text=True)
+        refused = run("--format", "hdf5")
+        self.assertEqual(refused.returncode, 2)
+        self.assert_mentions(refused.stderr, "--format hdf5", "bentaxis_hdf5.so", str(self.folder / "lib/bentaxis"))
+        self.assertFalse((self.folder / "out").exists())
+        self.assertEqual(run().returncode, 0)
+        self.assertTrue((self.folder / "out/sweep.csv").exists())
+        self.assertFalse((self.folder / "out/sweep.h5").exists())
+
     @unittest.skipIf(h5py is None, "no h5py")
     def test_hdf5_holds_the_same_and_says_what_it_is(self):
         if not self.has("HDF5"):

@@ -22,14 +22,19 @@ void* Module::symbol(const char* name) const {
   return library_ == nullptr ? nullptr : dlsym(library_, name);
 }
 
-void Module::missing(const std::string& what) const {
+std::string Module::what_is_wrong() const {
   std::string folders;
   for (const std::filesystem::path& folder : module_folders())
     folders += (folders.empty() ? "" : ", ") + folder.lexically_normal().string();
-  throw InputError(
-      what + ": the module " + file_ +
-      (why_.empty() ? " is in none of the folders " + folders : " cannot be loaded: " + why_) +
-      "; build or install all of bentaxis again");
+  return "the module " + file_ +
+         (loaded()       ? " is of another version"
+          : why_.empty() ? " is in none of the folders " + folders
+                         : " cannot be loaded: " + why_) +
+         "; build or install all of bentaxis again";
+}
+
+void Module::refuse(const std::string& what) const {
+  throw InputError(what + ": " + what_is_wrong());
 }
 
 }  // namespace bentaxis

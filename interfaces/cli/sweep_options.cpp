@@ -102,9 +102,7 @@ designs::SweepFormats formats_of(const std::vector<std::string>& formats) {
                                .hdf5 = formats.empty() && designs::has_hdf5()};
   for (const std::string& format : formats) (format == "csv" ? result.csv : result.hdf5) = true;
   if (result.hdf5 && !designs::has_hdf5())
-    throw InputError(
-        "--format hdf5: this program was built without HDF5; install libhdf5-dev (scripts/setup "
-        "full) and build again");
+    throw InputError("--format hdf5: " + designs::why_no_hdf5());
   return result;
 }
 

@@ -16,8 +16,6 @@
 
 namespace bentaxis::designs {
 
-bool has_hdf5() { return true; }
-
 std::string hdf5_version() {
   return std::to_string(H5_VERS_MAJOR) + "." + std::to_string(H5_VERS_MINOR) + "." +
          std::to_string(H5_VERS_RELEASE);
@@ -26,10 +24,14 @@ std::string hdf5_version() {
 namespace {
 
 // The library brings curl, OpenSSL and LDAP: forty others, loaded where HDF5 is written.
-const Hdf5Functions& hdf5() {
+const Module& module() {
   static const Module loaded(BENTAXIS_HDF5_MODULE);
+  return loaded;
+}
+
+const Hdf5Functions& hdf5() {
   static const Hdf5Functions& functions =
-      loaded.table<Hdf5Functions>("bentaxis_hdf5_functions", "sweep.h5");
+      module().table<Hdf5Functions>("bentaxis_hdf5_functions", "sweep.h5");
   return functions;
 }
 
@@ -142,6 +144,8 @@ void write_rows(const Handle& set, hid_t type, hsize_t first, hsize_t count, con
 
 }  // namespace
 
+std::string why_no_hdf5() { return module().loaded() ? "" : module().what_is_wrong(); }
+
 struct Hdf5File::Implementation {
   std::size_t variables, outputs;
   Handle file, reason_type;
@@ -248,15 +252,16 @@ void Hdf5File::finish(const std::vector<SweepCheck>& checks) {
 
 namespace bentaxis::designs {
 
-bool has_hdf5() { return false; }
 std::string hdf5_version() { return "none"; }
+std::string why_no_hdf5() {
+  return "this program was built without HDF5; install libhdf5-dev (scripts/setup full) and build "
+         "again";
+}
 
 struct Hdf5File::Implementation {};
 
 Hdf5File::Hdf5File(const std::filesystem::path& file, const Sweep&, const SweepRecord&) {
-  throw InputError(file.string() +
-                   ": this program was built without HDF5; install libhdf5-dev (scripts/setup "
-                   "full) and build again, or take --format csv");
+  throw InputError(file.string() + ": " + why_no_hdf5() + ", or take --format csv");
 }
 Hdf5File::~Hdf5File() = default;
 void Hdf5File::add(const SweepBlock&) {}

@@ -15,6 +15,8 @@
 #include "sweep_hdf5.h"
 
 namespace bentaxis::designs {
+
+bool has_hdf5() { return why_no_hdf5().empty(); }
 namespace {
 
 // "max:Rb1_z1_N" says its unit; "peak:Rb1" does not.

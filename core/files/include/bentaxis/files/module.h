@@ -20,15 +20,18 @@ class Module {
   /// @throws InputError where the module or the table is missing: which file, for what, and why
   template <class Table>
   const Table& table(const char* name, const std::string& what) const {
-    if (symbol(name) == nullptr) missing(what);
+    if (symbol(name) == nullptr) refuse(what);
     return *static_cast<const Table*>(symbol(name));
   }
+  bool loaded() const { return library_ != nullptr; }
+  /// Which file is missing, in which folders, and what to do; or why it could not be loaded.
+  std::string what_is_wrong() const;
   /// Why the module could not be loaded; "" where there is none.
   const std::string& why() const { return why_; }
 
  private:
   void* symbol(const char* name) const;
-  [[noreturn]] void missing(const std::string& what) const;
+  [[noreturn]] void refuse(const std::string& what) const;
 
   std::string file_;
   void* library_ = nullptr;

@@ -16,7 +16,8 @@ struct SweepFormats {
 };
 /// Whether this program can write HDF5.
 bool has_hdf5();
-std::string hdf5_version();  ///< "none" where it cannot
+std::string why_no_hdf5();   ///< "" where it can
+std::string hdf5_version();  ///< "none" where the program was built without it
 
 /// Writes sweep.csv, sweep.h5 and, where designs were checked, sweep_checks.csv, block by block:
 /// memory does not grow with the number of designs.
