@@ -71,8 +71,8 @@ TEST(ModuleTest, WhatIsMissingIsNamedWithTheFoldersThatWereSearched) {
 TEST(ModuleTest, ATableThatAModuleLacksIsRefused) {
   const Module module("bentaxis_matio.so");
   EXPECT_EQ(module.why(), "");
-  EXPECT_NO_THROW(module.table<int>("bentaxis_matio_functions", "MATLAB files"));
-  EXPECT_THROW(module.table<int>("bentaxis_hdf5_functions", "sweep.h5"), InputError);
+  EXPECT_NO_THROW(module.table<int>("kBentaxisMatio", "MATLAB files"));
+  EXPECT_THROW(module.table<int>("kBentaxisHdf5", "sweep.h5"), InputError);
 }
 
 class OutputFolderTest : public testing::Test {

@@ -15,7 +15,7 @@ namespace {
 
 const MatioFunctions& matio() {
   static const Module loaded(BENTAXIS_MATIO_MODULE);
-  return loaded.table<MatioFunctions>("bentaxis_matio_functions", "MATLAB files");
+  return loaded.table<MatioFunctions>("kBentaxisMatio", "MATLAB files");
 }
 
 struct Column {

@@ -20,5 +20,5 @@ struct MatioFunctions {
 }  // namespace bentaxis::foreign
 
 extern "C" {
-extern const bentaxis::foreign::MatioFunctions bentaxis_matio_functions;
+extern const bentaxis::foreign::MatioFunctions kBentaxisMatio;
 }

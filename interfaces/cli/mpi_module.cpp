@@ -22,6 +22,6 @@ void tell_text(char* text, int length) { MPI_Bcast(text, length, MPI_CHAR, 0, MP
 }  // namespace
 
 extern "C" {
-const bentaxis::cli::MpiFunctions bentaxis_mpi_functions = {start,  finish,      end_all,  wait,
-                                                            add_up, tell_length, tell_text};
+const bentaxis::cli::MpiFunctions kBentaxisMpi = {start,  finish,      end_all,  wait,
+                                                  add_up, tell_length, tell_text};
 }

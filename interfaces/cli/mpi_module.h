@@ -16,5 +16,5 @@ struct MpiFunctions {
 }  // namespace bentaxis::cli
 
 extern "C" {
-extern const bentaxis::cli::MpiFunctions bentaxis_mpi_functions;
+extern const bentaxis::cli::MpiFunctions kBentaxisMpi;
 }

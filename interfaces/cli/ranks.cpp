@@ -31,7 +31,7 @@ namespace {
 // MPI is loaded in ranks alone: it brings eight libraries.
 const MpiFunctions& mpi() {
   static const Module loaded(BENTAXIS_MPI_MODULE);
-  return loaded.table<MpiFunctions>("bentaxis_mpi_functions", "ranks");
+  return loaded.table<MpiFunctions>("kBentaxisMpi", "ranks");
 }
 
 [[noreturn]] void end_all(int rank, const char* why, int status) {

@@ -70,5 +70,5 @@ CeresEnd bentaxis_ceres_solve(const CeresTask& task, std::vector<double>& u) {
 }
 
 extern "C" {
-decltype(&bentaxis_ceres_solve) const bentaxis_ceres_solver = bentaxis_ceres_solve;
+decltype(&bentaxis_ceres_solve) const kBentaxisCeres = bentaxis_ceres_solve;
 }

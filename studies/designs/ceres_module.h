@@ -32,5 +32,5 @@ bentaxis::designs::CeresEnd bentaxis_ceres_solve(const bentaxis::designs::CeresT
                                                  std::vector<double>& u);
 
 extern "C" {
-extern decltype(&bentaxis_ceres_solve) const bentaxis_ceres_solver;
+extern decltype(&bentaxis_ceres_solve) const kBentaxisCeres;
 }

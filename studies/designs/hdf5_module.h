@@ -56,5 +56,5 @@ struct Hdf5Functions {
 }  // namespace bentaxis::designs
 
 extern "C" {
-extern const bentaxis::designs::Hdf5Functions bentaxis_hdf5_functions;
+extern const bentaxis::designs::Hdf5Functions kBentaxisHdf5;
 }

@@ -132,7 +132,7 @@ namespace {
 // Ceres brings SuiteSparse, METIS and gflags: fifteen libraries, loaded where something is fitted.
 auto* ceres_solver() {
   static const Module loaded(BENTAXIS_CERES_MODULE);
-  return loaded.table<decltype(&bentaxis_ceres_solve)>("bentaxis_ceres_solver", "least squares");
+  return loaded.table<decltype(&bentaxis_ceres_solve)>("kBentaxisCeres", "least squares");
 }
 
 // Gauss-Newton steps, shortest where the data leave a choice, of the parameters that no bound

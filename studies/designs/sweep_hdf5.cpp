@@ -31,7 +31,7 @@ const Module& module() {
 
 const Hdf5Functions& hdf5() {
   static const Hdf5Functions& functions =
-      module().table<Hdf5Functions>("bentaxis_hdf5_functions", "sweep.h5");
+      module().table<Hdf5Functions>("kBentaxisHdf5", "sweep.h5");
   return functions;
 }
 
