@@ -14,12 +14,12 @@ Module::Module(const std::string& file) : file_(file) {
       library_ = dlopen((folder / file).c_str(), RTLD_NOW | RTLD_LOCAL);
       if (library_ == nullptr) why_ = dlerror();
     }
-  // A program with the installed library in it has its modules in its search path.
-  if (library_ == nullptr && why_.empty()) library_ = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
 }
 
-void* Module::symbol(const char* name) const {
-  return library_ == nullptr ? nullptr : dlsym(library_, name);
+void* Module::needed(const char* name, const std::string& what) const {
+  void* const found = library_ == nullptr ? nullptr : dlsym(library_, name);
+  if (found == nullptr) throw InputError(what + ": " + what_is_wrong());
+  return found;
 }
 
 std::string Module::what_is_wrong() const {
@@ -31,10 +31,6 @@ std::string Module::what_is_wrong() const {
           : why_.empty() ? " is in none of the folders " + folders
                          : " cannot be loaded: " + why_) +
          "; build or install all of bentaxis again";
-}
-
-void Module::refuse(const std::string& what) const {
-  throw InputError(what + ": " + what_is_wrong());
 }
 
 }  // namespace bentaxis

@@ -1,9 +1,31 @@
 #include "bentaxis/files/module_folders.h"
 
 #include <dlfcn.h>
+#include <link.h>
+
+#include <cstddef>
 
 namespace bentaxis {
 namespace {
+
+// Where a program, or a library, with the installed library in it finds the modules: a folder of
+// its search path (target_link_options of bentaxis_files).
+void add_installed(std::vector<std::filesystem::path>& folders) {
+  static const int here = 0;
+  Dl_info info{};
+  link_map* object = nullptr;
+  if (dladdr1(&here, &info, reinterpret_cast<void**>(&object), RTLD_DL_LINKMAP) == 0) return;
+  Dl_serinfo size{};
+  if (dlinfo(object, RTLD_DI_SERINFOSIZE, &size) != 0) return;
+  std::vector<std::max_align_t> room(size.dls_size / sizeof(std::max_align_t) + 1);
+  auto* const paths = reinterpret_cast<Dl_serinfo*>(room.data());
+  dlinfo(object, RTLD_DI_SERINFOSIZE, paths);
+  if (dlinfo(object, RTLD_DI_SERINFO, paths) != 0) return;
+  for (unsigned i = 0; i < paths->dls_cnt; ++i) {
+    const std::filesystem::path folder = paths->dls_serpath[i].dls_name;
+    if (folder.filename() == "bentaxis") folders.push_back(folder);
+  }
+}
 
 // The file of the Python module, where this code is part of it; else that of the program, or what
 // the program was called.
@@ -29,6 +51,7 @@ std::vector<std::filesystem::path> module_folders() {
     folders.push_back(file.parent_path() / BENTAXIS_MODULES_FROM_PYTHON);
     built.push_back(file.parent_path() / "../../modules");
   }
+  add_installed(folders);
   folders.emplace_back(BENTAXIS_MODULES_INSTALLED);
   folders.insert(folders.end(), built.begin(), built.end());
   return folders;

@@ -2,8 +2,6 @@
 
 #include <ceres/ceres.h>
 
-#include <cmath>
-
 namespace {
 
 using bentaxis::designs::CeresEnd;

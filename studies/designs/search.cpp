@@ -125,12 +125,7 @@ const Module& module() {
 
 template <class Function>
 Function& of_pagmo(const char* name) {
-  Function* const function = module().function<Function>(name);
-  if (function == nullptr)
-    throw InputError(std::string("optimise: the part of the program that searches, ") +
-                     BENTAXIS_SEARCH_MODULE + ", cannot be loaded" +
-                     (module().why().empty() ? ": no such file" : ": " + module().why()));
-  return *function;
+  return module().function<Function>(name, "optimise");
 }
 
 // Costs of points whose variables are in another order; what is not allowed costs more than all

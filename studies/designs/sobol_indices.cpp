@@ -33,8 +33,8 @@ const Module& module() {
   return loaded;
 }
 
-auto* estimator() {
-  return module().function<decltype(bentaxis_sobol_indices)>("bentaxis_sobol_indices");
+auto& estimator() {
+  return module().function<decltype(bentaxis_sobol_indices)>("bentaxis_sobol_indices", "--sobol");
 }
 
 void estimate(std::size_t base, std::size_t numbers, const std::vector<double>& inputs,
@@ -103,11 +103,13 @@ double centre(std::vector<double>& values) {
 }  // namespace
 
 void require_sobol_indices() {
-  if (estimator() == nullptr)
-    throw InputError(
-        "--sobol: this program was built without OpenTURNS; install "
-        "libopenturns-dev (scripts/setup full) and build again" +
-        (module().why().empty() ? "" : ": " + module().why()));
+#ifdef BENTAXIS_HAS_OPENTURNS
+  estimator();
+#else
+  throw InputError(
+      "--sobol: this program was built without OpenTURNS; install libopenturns-dev (scripts/setup "
+      "full) and build again");
+#endif
 }
 
 std::string openturns_version() {

@@ -8,30 +8,26 @@ namespace bentaxis {
 
 class Module {
  public:
-  /// @param file  name of the file, as "bentaxis_openturns.so"; "": the program was built without
-  /// it
+  /// @param file  name of the file, as "bentaxis_openturns.so"; "": none
   explicit Module(const std::string& file);
-  /// A function of the module by its name; null where the module or the function is missing.
+  /// A function of the module by its name.
+  /// @throws InputError where the module or the function is missing: which file, for what, and why
   template <class Function>
-  Function* function(const char* name) const {
-    return reinterpret_cast<Function*>(symbol(name));
+  Function& function(const char* name, const std::string& what) const {
+    return *reinterpret_cast<Function*>(needed(name, what));
   }
   /// A table of functions of the module by its name.
   /// @throws InputError where the module or the table is missing: which file, for what, and why
   template <class Table>
   const Table& table(const char* name, const std::string& what) const {
-    if (symbol(name) == nullptr) refuse(what);
-    return *static_cast<const Table*>(symbol(name));
+    return *static_cast<const Table*>(needed(name, what));
   }
   bool loaded() const { return library_ != nullptr; }
   /// Which file is missing, in which folders, and what to do; or why it could not be loaded.
   std::string what_is_wrong() const;
-  /// Why the module could not be loaded; "" where there is none.
-  const std::string& why() const { return why_; }
 
  private:
-  void* symbol(const char* name) const;
-  [[noreturn]] void refuse(const std::string& what) const;
+  void* needed(const char* name, const std::string& what) const;
 
   std::string file_;
   void* library_ = nullptr;
