@@ -36,8 +36,8 @@ set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/package)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
-# What is linked is found by dpkg-shlibdeps; librsvg is loaded when a PNG is wanted.
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# What is linked is added by the script; librsvg is loaded when a PNG is wanted.
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/scripts/cmake/package_depends.cmake)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "librsvg2-2")
 if(BENTAXIS_PYTHON)
   set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/scripts/cmake/prerm)
