@@ -607,6 +607,20 @@ std::string dumped(const Json& json, int indent) {
 
 }  // namespace
 
+FigureContent::FigureContent() = default;
+FigureContent::~FigureContent() = default;
+FigureContent::FigureContent(const FigureContent&) = default;
+FigureContent::FigureContent(FigureContent&&) noexcept = default;
+FigureContent& FigureContent::operator=(const FigureContent&) = default;
+FigureContent& FigureContent::operator=(FigureContent&&) noexcept = default;
+
+Document::Document() = default;
+Document::~Document() = default;
+Document::Document(const Document&) = default;
+Document::Document(Document&&) noexcept = default;
+Document& Document::operator=(const Document&) = default;
+Document& Document::operator=(Document&&) noexcept = default;
+
 ModelSection model_of(const ResultTable& table, const Lines& assumptions) {
   return {table.name, assumptions, table.provenance.facts, table.provenance.seconds, table.rows()};
 }

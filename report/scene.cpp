@@ -144,6 +144,13 @@ inline void to_json(Json& json, const SceneLoad& load) {
   if (load.counterpart) json["counterpart"] = true;
 }
 
+Scene::Scene() = default;
+Scene::~Scene() = default;
+Scene::Scene(const Scene&) = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(const Scene&) = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+
 std::string compact_json(const Scene& scene) {
   Json json = {{"models", scene.models},  {"rows", scene.rows},     {"series", Json::array()},
                {"bodies", scene.bodies},  {"loads", scene.loads},   {"sums", scene.sums},

@@ -239,12 +239,24 @@ struct ParallelFigure {
   std::string marked_label = {};         ///< what these are: "Pareto front"
 };
 
+// Compiled once: in every source that handles figures the copies of all their kinds take the
+// compiler seconds. So with Scene and Document.
+struct FigureContent
+    : std::variant<ChannelFigure, PistonBars, OwnFigure, XyFigure, MapFigure, ScatterFigure,
+                   DrawingFigure, BarsFigure, BandFigure, ParallelFigure> {
+  using variant::variant;
+  FigureContent();
+  ~FigureContent();
+  FigureContent(const FigureContent& other);
+  FigureContent(FigureContent&& other) noexcept;
+  FigureContent& operator=(const FigureContent& other);
+  FigureContent& operator=(FigureContent&& other) noexcept;
+};
+
 struct Figure {
   std::string id, title;
   std::string paper;  ///< figures of the paper that it answers, or ""
-  std::variant<ChannelFigure, PistonBars, OwnFigure, XyFigure, MapFigure, ScatterFigure,
-               DrawingFigure, BarsFigure, BandFigure, ParallelFigure>
-      content;
+  FigureContent content;
   std::string note = {};
 };
 
@@ -436,6 +448,13 @@ struct LongRunSection {
 /// A report. A part that is absent is left out of the JSON and of the page; a list that is there
 /// may be empty.
 struct Document {
+  Document();
+  ~Document();
+  Document(const Document& other);
+  Document(Document&& other) noexcept;
+  Document& operator=(const Document& other);
+  Document& operator=(Document&& other) noexcept;
+
   std::string title;
   Lines program;  ///< versions
   std::optional<Provenance> provenance = std::nullopt;

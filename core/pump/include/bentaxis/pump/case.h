@@ -50,6 +50,14 @@ struct InputFile {
 };
 
 struct Case {
+  // Compiled once: nearly every source copies cases.
+  Case();
+  ~Case();
+  Case(const Case& other);
+  Case(Case&& other) noexcept;
+  Case& operator=(const Case& other);
+  Case& operator=(Case&& other) noexcept;
+
   std::filesystem::path file;
   std::string name;
   PumpParameters pump;
