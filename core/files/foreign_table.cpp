@@ -202,9 +202,8 @@ void read_run(const Grid& grid, const Run& run, std::size_t top, const std::stri
     std::string name =
         heading.names[c].empty() ? "column " + std::to_string(c + 1) : heading.names[c];
     if (!title.empty() && c != columns.front()) name.insert(0, title + ".");
-    name = names.different(name);
-    table.header.push_back(name);
     table.units.push_back(heading.units[c].empty() ? unit_in_name(name) : heading.units[c]);
+    table.header.push_back(names.different(name));
   }
   std::vector<int> digits(columns.size(), 0);
   std::vector<std::set<double>> different(columns.size());

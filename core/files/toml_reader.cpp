@@ -284,7 +284,8 @@ int TableReader::integer(const std::string& key, int low, int high, std::optiona
   if (!node) return static_cast<int>(defaulted(key, *fallback));
   if (!node->node->is_integer()) fail_at(*node, key, "must be " + wanted);
   const auto value = node->node->as_integer()->get();
-  if (value < low || value > high) fail_at(*node, key, "must be " + wanted);
+  if (value < low) fail_at(*node, key, "must be " + wanted);
+  if (value > high) fail_at(*node, key, "must be an integer " + range.text());
   record(key, written(*node, key));
   return static_cast<int>(value);
 }

@@ -229,6 +229,15 @@ CLI::Option* number(CLI::Option* option) {
   return option->check(number_that("a number", [](double) { return true; }).name(kAnyNumber));
 }
 
+// Nothing is what a script passes whose variable is not set: it must not count as not given.
+CLI::Option* text(CLI::Option* option) {
+  return option->check(CLI::Validator(
+      [](const std::string& value) {
+        return value.empty() ? std::string("must not be empty") : std::string();
+      },
+      ""));
+}
+
 }  // namespace
 
 Option CommandParser::option(const std::string& name, int& value, const std::string& what) {
@@ -240,7 +249,7 @@ Option CommandParser::option(const std::string& name, double& value, const std::
 }
 
 Option CommandParser::option(const std::string& name, std::string& value, const std::string& what) {
-  return wrapped(app_->add_option(name, value, what));
+  return wrapped(cli::text(app_->add_option(name, value, what)));
 }
 
 Option CommandParser::option(const std::string& name, std::optional<double>& value,
@@ -255,7 +264,7 @@ Option CommandParser::option(const std::string& name, std::vector<double>& value
 
 Option CommandParser::option(const std::string& name, std::vector<std::string>& values,
                              const std::string& what) {
-  return wrapped(app_->add_option(name, values, what));
+  return wrapped(cli::text(app_->add_option(name, values, what)));
 }
 
 void CommandParser::flag(const std::string& name, bool& value, const std::string& what) {

@@ -29,7 +29,8 @@ std::vector<fs::path> json_files(const fs::path& folder) {
   try {
     for (const auto& entry :
          fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied))
-      if (entry.is_regular_file() && entry.path().extension() == ".json")
+      // A link to itself is no file.
+      if (std::error_code none; entry.path().extension() == ".json" && entry.is_regular_file(none))
         files.push_back(entry.path());
   } catch (const fs::filesystem_error& error) {
     throw InputError(error.path1().string() + ": cannot be read: " + error.code().message());

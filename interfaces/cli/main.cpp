@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <new>
@@ -43,6 +44,12 @@ int guarded(const std::function<int()>& job) {
   } catch (const std::bad_alloc&) {
     say("not enough memory; use fewer samples or revolutions");
     return kComputationFailed;
+  } catch (const std::filesystem::filesystem_error& error) {  // no permission, a link to itself
+    const std::string path = error.path1().string();
+    say(without_control_characters(
+            (path.empty() ? "the current folder" : path) + ": " + error.code().message(), false)
+            .c_str());
+    return kBadInput;
   } catch (const std::exception& error) {
     say(without_control_characters(error.what(), false).c_str());
     return kComputationFailed;

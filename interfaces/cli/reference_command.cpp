@@ -57,10 +57,10 @@ int make_new(const ReferenceOptions& options) {
                          ": exists; use it by --mapping, or take it away for a new guess");
       write_whole(proposal, description);
       std::printf("%s", proposals.c_str());
-      std::printf(
-          "%s: confirm or edit it, then: bentaxis reference new .. --mapping %s (or --accept the "
-          "guess)\n",
-          proposal.c_str(), proposal.c_str());
+      std::printf("%s: %s it, then: bentaxis reference new .. --mapping %s%s\n", proposal.c_str(),
+                  guess.unrecognised.empty() ? "confirm or edit"
+                                             : "say what the undecided columns are, and confirm",
+                  proposal.c_str(), guess.unrecognised.empty() ? " (or --accept the guess)" : "");
       return kDone;
     }
   }

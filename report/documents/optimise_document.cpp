@@ -279,6 +279,16 @@ std::vector<std::string> optimise_answers(const Optimisation& found) {
     answers.emplace_back("Widen a range of --vary or relax a --subject-to.");
     return answers;
   }
+  bool all_constant = true;
+  for (const std::size_t k : objectives(found)) {
+    std::string constant = view.constant_text(k);
+    all_constant &= !constant.empty();
+    if (!constant.empty()) answers.push_back(std::move(constant));
+  }
+  if (all_constant) {
+    answers.emplace_back("There is nothing to choose: every design is as good as the others.");
+    return answers;
+  }
   for (std::size_t i = 0; i < found.chosen.size(); ++i) {
     const auto& [why, design] = found.chosen[i];
     std::string values;

@@ -303,6 +303,10 @@ std::vector<std::string> sweep_answers(const SweepResult& result) {
     return fmt::format("design {}, {}", view.number(d), view.text(d));
   };
   for (std::size_t k = 0; k < view.outputs(); ++k) {
+    if (std::string constant = view.constant_text(k); !constant.empty()) {
+      answers.push_back(std::move(constant));
+      continue;
+    }
     std::optional<std::size_t> lowest, highest;
     for (std::size_t d = 0; d < view.designs(); ++d) {
       const double value = view.result(d, k);

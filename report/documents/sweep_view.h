@@ -29,6 +29,8 @@ class SweepView {
   double result(std::size_t design, std::size_t output) const {
     return result_.results[design * outputs() + output];
   }
+  /// "NAME is .. in every design: ..", or "" where the designs differ or fewer than two have it.
+  std::string constant_text(std::size_t output) const;
   /// Why it is infeasible, or "".
   const std::string& reason(std::size_t design) const;
   /// Its number in the plan.

@@ -110,11 +110,16 @@ std::string factor_lines(const std::string& unit, double factor) {
 
 std::string curve_text(const MappingGuess& guess) {
   const compare::CurveDescription& curve = guess.curve;
-  const std::string unrecognised =
-      guess.unrecognised.empty()
-          ? ""
-          : "# Not recognised, although a name or size suggests a channel: " +
-                list_text(guess.unrecognised) + ". Map these, or leave them in ignore.\n";
+  const std::vector<std::string>& open = guess.unrecognised;
+  const std::string undecided =
+      open.empty() ? ""
+                   : "# Not recognised, although a name or size suggests a channel: map each, or "
+                     "put it into ignore.\nundecided = " +
+                         list_text(open) + "\n";
+  std::vector<std::string> ignored = curve.ignored;
+  std::erase_if(ignored, [&](const std::string& name) {
+    return std::find(open.begin(), open.end(), name) != open.end();
+  });
   std::string text = fmt::format(
       "[[curve]]\nfile = {}\n{}points = {}\nguessed = true  # every report lists the assumptions; "
       "remove this line once you have checked them\n{}ignore = {}  # columns that stand for no "
@@ -123,9 +128,8 @@ std::string curve_text(const MappingGuess& guess) {
       "us, min with the speed of the case\nsign = {}\noffset_deg = {}\n",
       toml_text(curve.file.filename()),
       curve.sheet.empty() ? "" : "sheet = " + toml_text(curve.sheet) + "\n", curve.points,
-      unrecognised, list_text(curve.ignored), toml_text(curve.angle.column),
-      toml_text(curve.angle.unit), curve.angle.sign < 0 ? -1 : 1,
-      number_text(curve.angle.offset_deg));
+      undecided, list_text(ignored), toml_text(curve.angle.column), toml_text(curve.angle.unit),
+      curve.angle.sign < 0 ? -1 : 1, number_text(curve.angle.offset_deg));
   if (curve.angle.rounding_deg > 0)
     text += fmt::format("rounding_deg = {:.2g}  # half a unit of its last digit\n",
                         curve.angle.rounding_deg);

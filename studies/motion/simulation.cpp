@@ -129,6 +129,7 @@ void for_each_value(const Trajectory& run, std::size_t row, const Use& use) {
       use(what, run.oil->value(row, c));
 }
 
+// Of vectors the peak is that of their length, as everywhere.
 std::map<std::string, double> peaks_of(const Trajectory& run) {
   std::map<std::string, double> peaks;
   for (std::size_t row = 0; row < run.lag.size(); ++row)
@@ -136,6 +137,7 @@ std::map<std::string, double> peaks_of(const Trajectory& run) {
       double& peak = peaks[what.group];
       peak = std::max(peak, std::abs(value));
     });
+  for (auto& [group, peak] : peaks) peak = std::max(peak, run.table.results.peak(group));
   return peaks;
 }
 
