@@ -82,8 +82,11 @@ DerivativeModel::DerivativeModel(const PumpParameters& pump, const Assumptions& 
   std::size_t first = 0;
   do {
     const std::size_t count = std::min<std::size_t>(kDirections, directions.size() - first);
-    prepare_numbers(with_rates(pump, directions.subspan(first, count)), pump, assumptions,
-                    prepared.numbers.emplace_back());
+    const closed_form::FrictionLaw law =
+        prepare_numbers(with_rates(pump, directions.subspan(first, count)), pump, assumptions,
+                        prepared.numbers.emplace_back());
+    prepared.pump.friction.smooth |= law.smooth;  // also where friction is varied from 0
+    prepared.pump.friction.dry |= law.dry;
     first += kDirections;
   } while (first < directions.size());
   prepared_ = std::make_unique<const Prepared>(std::move(prepared));

@@ -60,6 +60,17 @@ BENTAXIS_INLINE Dual tan(const Dual& a) {
   return chain(t, 1 + t * t, a);
 }
 
+/// Whether a parameter that must not be negative counts: it is not 0, or is varied from 0.
+template <class T>
+bool counts(const T& parameter) {
+  return parameter > 0;
+}
+inline bool counts(const Dual& parameter) {
+  for (const double rate : parameter.rate)
+    if (rate != 0) return true;
+  return parameter.value > 0;
+}
+
 template <>
 struct Math<Dual> {
   BENTAXIS_INLINE static Dual root(const Dual& x) {

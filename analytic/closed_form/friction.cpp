@@ -13,7 +13,7 @@ FrictionLaw prepare(const RawPump<T>& pump, bool any, FrictionNumbers<T>& p) {
   p.inverse_regularization = smooth ? 1 / friction.regularization : T(0);
   p.dry = smooth ? 0 : 1;
   p.rest_radius = kRestShare * pump.geometry.joint_circle_radius;
-  return {p.coulomb > 0 && smooth, p.coulomb > 0 && !smooth};
+  return {counts(p.coulomb) && smooth, counts(p.coulomb) && !smooth};
 }
 template FrictionLaw prepare(const RawPump<double>& pump, bool any, FrictionNumbers<double>& p);
 template FrictionLaw prepare(const RawPump<Dual>& pump, bool any, FrictionNumbers<Dual>& p);

@@ -44,7 +44,7 @@ void prepare(const RawPump<T>& pump, PistonInertia inertia, const FrameNumbers<T
   if (inertia == PistonInertia::dynamically_equivalent) {
     // Point masses at A and B that have the transverse inertia about the centre of mass between
     // them, and the rest there.
-    const bool spread = real.transverse_inertia > 0;
+    const bool spread = counts(real.transverse_inertia) && centre > 0 && length - centre > 0;
     const T at_joint = spread ? real.transverse_inertia / (length * centre) : T(0);
     const T at_ring = spread ? real.transverse_inertia / (length * (length - centre)) : T(0);
     const T at_centre = p.mass - at_joint - at_ring;

@@ -146,6 +146,8 @@ class StatisticRates {
         tie_(kTie * scale),
         sum_(directions),
         squares_(directions),
+        kinks_(directions),
+        slopes_(directions),
         low_(directions),
         high_(directions),
         peak_(directions) {}
@@ -164,17 +166,34 @@ class StatisticRates {
       for (const std::size_t c : output_.columns) product += values[c] * row[c];
       return value > 0 ? product / value : 0;
     };
-    const double sign = value < 0 ? -1 : 1;
-    low_.add(-value, tie_, [&](std::size_t d) { return -rate(d); });
-    high_.add(value, tie_, rate);
-    peak_.add(sign * value, tie_, [&](std::size_t d) { return sign * rate(d); });
+    // A magnitude that is 0 grows by this on both sides.
+    const bool zero = std::abs(value) <= tie_;
+    const auto slope = [&](std::size_t d) {
+      double square = 0;
+      for (const std::size_t c : output_.columns)
+        square += derivatives[d * reactions + c] * derivatives[d * reactions + c];
+      return std::sqrt(square);
+    };
+    for (const double side : {-1.0, 1.0}) {
+      const auto magnitude = [&](std::size_t d) {
+        return zero ? side * slope(d) : (value < 0 ? -1 : 1) * rate(d);
+      };
+      peak_.add(std::abs(value), tie_, magnitude);
+      const auto own = [&](std::size_t d) { return vector ? magnitude(d) : rate(d); };
+      high_.add(value, tie_, own);
+      low_.add(-value, tie_, [&](std::size_t d) { return -own(d); });
+    }
     mean_square_ += value * value;
     ++count_;
     for (std::size_t d = 0; d < sum_.size(); ++d) {
-      const double r = rate(d);
+      const double r = vector && zero ? 0 : rate(d);
       sum_[d] += r;
       squares_[d] += value * r;
+      if (!zero) continue;
+      if (vector) kinks_[d] += slope(d);
+      slopes_[d] += slope(d) * slope(d);
     }
+    all_zero_ &= zero;
   }
 
   Derivative derivative(std::size_t d) const {
@@ -182,7 +201,7 @@ class StatisticRates {
     Derivative high = high_.rate(d);
     switch (output_.statistic) {
       case Statistic::mean:
-        return {sum_[d] / count_};
+        return {sum_[d] / count_, kinks_[d] / count_};
       case Statistic::min:
         return {-low.value, low.error};
       case Statistic::max:
@@ -190,7 +209,8 @@ class StatisticRates {
       case Statistic::peak:
         return peak_.rate(d);
       case Statistic::rms:
-        return {mean_square_ > 0 ? squares_[d] / std::sqrt(mean_square_ * count_) : 0};
+        if (all_zero_) return {0, std::sqrt(slopes_[d] / count_)};
+        return {squares_[d] / std::sqrt(mean_square_ * count_)};
       case Statistic::range:
         break;
     }
@@ -200,8 +220,10 @@ class StatisticRates {
  private:
   const Output& output_;
   double tie_, count_ = 0, mean_square_ = 0;
-  std::vector<double> sum_, squares_;  // one per direction
-  LargestRate low_, high_, peak_;      // of what is lowest the negative
+  bool all_zero_ = true;
+  std::vector<double> sum_, squares_;   // one per direction
+  std::vector<double> kinks_, slopes_;  // of samples where it is 0: sum of slopes, of their squares
+  LargestRate low_, high_, peak_;       // of what is lowest the negative
 };
 
 // ---- Hydraulic pressure
