@@ -888,6 +888,35 @@ class BadInputTest(ProgramTest):
                 line = self.refused_by_every_command(case)
                 self.assert_mentions(line, f"curve.csv:{number}:" if number else "curve.csv:", *words)
 
+    def test_a_column_of_a_curve_that_comes_twice(self):
+        case = self.case(**{"pressure.kind": '"curve"', "pressure.file": '"curve.csv"'})
+        for heading in ("theta_deg,pressure_bar,pressure_bar", "theta_deg,theta_deg,pressure_bar"):
+            with self.subTest(heading):
+                (self.folder / "curve.csv").write_text(heading + "\n0,5,1\n90,6,200\n180,7,300\n")
+                self.assert_mentions(self.refused_by_every_command(case), "curve.csv", "must have one column")
+
+    def test_an_empty_argument_is_not_one_that_is_not_given(self):
+        """What a script passes whose variable is not set: a check would be left out."""
+        case = self.case()
+        for command, name in ((["compare", case, "--with", ""], "--with"), (["regress", "--filter", "standstill", ""], "dir"),
+                              (["compare", case, "--multibody-case", ""], "--multibody-case"), (["run", case, "--states", ""], "--states"),
+                              (["simulate", case, "--fmu", ""], "--fmu"), (["life", case, "--duty", ""], "--duty"),
+                              (["regress", "--junit", ""], "--junit"), (["show", case, "--out", ""], "--out"),
+                              (["sweep", case, "--study", ""], "--study"), (["merge", ""], "OUT"), (["run", ""], "case"),
+                              (["compare", case, "--set", ""], "--set")):
+            with self.subTest(command[0], name=name):
+                self.assert_mentions(self.refused(*command), name + ": must not be empty")
+
+    def test_what_the_system_refuses(self):
+        (self.folder / "loop").symlink_to("loop")
+        for name in ("loop", "loop/x", "a" * 300):
+            for command in (["regress", name], ["compare", self.case(), "--with", name], ["merge", name], ["index", name],
+                            ["reference", "update", name], ["reference", "golden", self.case(), "--out", name]):
+                with self.subTest(command[0], name=name[:9]):
+                    line = self.refused(*command)
+                    self.assert_mentions(line, name[:9])
+                    self.assertNotIn("filesystem", line)
+
     def test_files_that_are_none(self):
         (self.folder / "empty.toml").write_text("")
         (self.folder / "binary.toml").write_bytes(bytes(range(256)))

@@ -132,6 +132,33 @@ class ExportTest(ImportTest):
         self.regress(OUT_OF_TOLERANCE)
         self.assert_mentions(self.new(file, "--mapping", mapping, "--accept", status=BAD_INPUT).err, "--mapping")
 
+    def test_a_column_that_no_curve_resembles_must_be_decided(self):
+        file = self.exports / "good" / "bench.csv"
+        self.new(file)
+        mapping = self.folder / "ref_mapping.toml"
+        text = mapping.read_text()
+        self.assertNotIn("undecided", text)
+        # The torque, late by a seventh of a turn: an error of the record, or of another kind than it says.
+        lines = (self.folder / "late.csv")
+        rows = file.read_text().splitlines()
+        first = next(i for i, row in enumerate(rows) if re.match(r"[0-9.]+;", row))
+        column = next(row for row in rows if "Antriebsmoment" in row).split(";").index('"Antriebsmoment"')
+        cells = [row.split(";") for row in rows[first:]]
+        torque = [row[column] for row in cells]
+        shift = len(torque) // 7
+        for i, row in enumerate(cells):
+            row[column] = torque[i - shift]
+        lines.write_text("\n".join(rows[:first] + [";".join(row) for row in cells]) + "\n")
+        mapping.unlink()
+        out = self.new(lines).out
+        self.assert_mentions(out, "Antriebsmoment", "not recognised", "say what the undecided columns are")
+        self.assertNotIn("--accept", out)
+        self.assert_mentions(self.new(lines, "--mapping", mapping, status=BAD_INPUT).err, "undecided", "Antriebsmoment", "ignore")
+        text = mapping.read_text()
+        mapping.write_text(re.sub("undecided = .*\n", "", text).replace("ignore = [", 'ignore = ["Antriebsmoment", '))
+        self.new(lines, "--mapping", mapping)
+        self.regress(DONE)
+
     def test_sheets(self):
         book = self.exports / "good" / "results.xlsx"
         self.assert_mentions(self.new(book, "--sheet", "Absent", status=BAD_INPUT).err, "Absent", "Info, Results")

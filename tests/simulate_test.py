@@ -91,6 +91,16 @@ class PowerTest(SimulateTest):
         self.assertAlmostEqual(sum(useful) / len(useful) / compared["flow to the load"][0], 1, 4)
 
 
+    def test_peaks_are_those_of_vectors(self):
+        result = self.simulate(base.REPO / "cases" / "bap63_motor_start.toml", "--set", "drive.duration_s=0.01", "--set", "drive.samples=100")
+        printed = {line.split()[0]: float(line.split()[1]) for line in result.stdout.splitlines() if re.match(r"R[a-z0-9]+ +\d", line)}
+        rows = self.table("out/simulation_analytic.csv")
+        length = max(sum(float(row[f"Rb1_{axis}1_N"]) ** 2 for axis in "xyz") ** 0.5 for row in rows)
+        self.assertAlmostEqual(printed["Rb1"] / length, 1, 4)
+        figures = json.loads((self.folder / "out/report.json").read_text())["key_figures"]["rows"]
+        self.assertIn(round(printed["Rb1"]), [round(row["values"][0]) for row in figures])
+
+
 class RestTest(SimulateTest):
     def test_a_shaft_at_rest_has_one_direction(self):
         """A given speed of 0 counts as +, whatever round-off the integration makes of it."""

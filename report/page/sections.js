@@ -91,7 +91,7 @@ const validity = ({ validity }) => !list(validity).length ? null : table([
   { head: "Share of the turn", num: true, cell: r => unit(number(r.share_percent, 3), "%") },
   { head: "Worst value", num: true, cell: r => unit(number(r.worst), r.unit) },
   { head: "at", num: true, cell: r => degrees(r.theta_deg) },
-  { head: "Consequence", cell: r => r.consequence || DASH },
+  { head: "Consequence where violated", cell: r => r.consequence || DASH },
 ], validity, { rowClass: r => (r.violated ? "flag" : "") });
 
 const timing = ({ timing }) => !list(timing).length ? null : table([
