@@ -99,7 +99,7 @@ class InitTest(ProgramTest):
         (self.folder / "link").symlink_to(self.folder / "full")
         bad = self.case("bad.toml", **{"pump.tilt_deg": 95})
         for arguments, words in ((("full",), ("full", "not empty")), (("plain",), ("plain", "not a directory")),
-                                 (("link",), ("link",)), (("none/below",), ("none", "does not exist")), (("",), ("name",)),
+                                 (("link",), ("link",)), (("none/below",), ("none", "does not exist")), (("",), ("must not be empty",)),
                                  (("new", "--case", bad), ("bad.toml", "tilt_deg", "95")),
                                  (("new", "--case", "missing.toml"), ("missing.toml",)),
                                  (("new", "--set", "pump.tilt=3"), ("pump.tilt", "tilt_deg"))):

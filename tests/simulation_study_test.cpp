@@ -377,6 +377,24 @@ TEST(MotionAnswers, AreThoseOfTheRows) {
   EXPECT_NEAR(a.beyond_plate->plate_mm, plate, 1e-12);
 }
 
+TEST(MotionAnswers, SayThatTheShaftTurnsBackwards) {
+  const Case the_case = read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_start_up.toml");
+  const auto backwards = [&](const std::vector<double>& speeds) {
+    std::vector<Row> rows;
+    for (const double rpm : speeds) rows.push_back({rpm, 1, 0, 0});
+    return motion_answers(run_of(the_case, rows), the_case).backwards;
+  };
+  const auto found = backwards({0, -100, -300, -50, 1000});
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->rpm, -300);
+  EXPECT_NEAR(found->at_s, 0.2, 1e-15);
+  EXPECT_TRUE(backwards({0, 100, -1000}).has_value());
+  EXPECT_FALSE(backwards({0, -49, 1000}).has_value());      // hardly
+  EXPECT_FALSE(backwards({-500, -300, 1000}).has_value());  // a reversal
+  EXPECT_FALSE(backwards({0, 500, 1000}).has_value());
+  EXPECT_FALSE(backwards({100, -10, 0}).has_value());  // stops
+}
+
 TEST(MotionAnswers, SayWhichWallIsLoadedMostAndWhenNoneIs) {
   const Case the_case =
       read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_tapered_pistons.toml",

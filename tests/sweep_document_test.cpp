@@ -107,7 +107,7 @@ TEST_F(SweepDocument, SaysWhereNothingChangesAnOutput) {
   EXPECT_THAT(sweep_answers(result_).front(), HasSubstr("best, lowest"));
   for (std::size_t d = 0; d < result_.designs; ++d) result_.results[2 * d] = 7;
   const auto answers = sweep_answers(result_);
-  EXPECT_THAT(answers.at(0), HasSubstr("max:Rb1_z1 is 7 N in every design"));
+  EXPECT_THAT(answers.at(0), HasSubstr("max:Rb1_z1_N is 7 N in every design"));
   EXPECT_THAT(answers.at(0), Not(HasSubstr("best")));
   EXPECT_THAT(answers.at(1), HasSubstr("best, highest"));
 }

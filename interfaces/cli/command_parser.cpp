@@ -15,6 +15,7 @@ namespace bentaxis::cli {
 namespace {
 
 constexpr const char* kAnyNumber = "number";  // the check of options without a range
+constexpr const char* kNotEmpty = "not empty";
 
 CLI::Validator number_that(const std::string& range, const std::function<bool(double)>& allowed,
                            bool integer = false) {
@@ -151,6 +152,11 @@ Option& Option::repeatable() {
   return *this;
 }
 
+Option& Option::may_be_empty() {
+  option_->get_validator(kNotEmpty)->active(false);
+  return *this;
+}
+
 Option& Option::excludes(const Option& other) {
   option_->excludes(other.option_);
   return *this;
@@ -235,7 +241,7 @@ CLI::Option* text(CLI::Option* option) {
       [](const std::string& value) {
         return value.empty() ? std::string("must not be empty") : std::string();
       },
-      ""));
+      "", kNotEmpty));
 }
 
 }  // namespace

@@ -48,9 +48,10 @@ class Option {
   Option& case_file();
   /// Its values in the help text, as in "NUMBER [36]".
   Option& text(const std::string& values);
-  Option& list();        ///< values are parted by commas too
-  Option& one_value();   ///< of an option that could take several
-  Option& repeatable();  ///< one value each time it is given; all are kept
+  Option& list();          ///< values are parted by commas too
+  Option& one_value();     ///< of an option that could take several
+  Option& repeatable();    ///< one value each time it is given; all are kept
+  Option& may_be_empty();  ///< of a text, which otherwise is refused where it is ""
   Option& excludes(const Option& other);
 
   Option& number_in(double low, double high);  ///< finite, in [low, high]

@@ -32,7 +32,9 @@ Command add_completion_command(CommandParser program) {
       .required()
       .one_of(shells)
       .text("bash|zsh|fish|words");
-  command.option("typed", options->typed, "words: the command line so far").text("-- WORD..");
+  command.option("typed", options->typed, "words: the command line so far")
+      .may_be_empty()
+      .text("-- WORD..");
   return {command, [options, program] {
             const std::string text = options->shell == kWords
                                          ? completion_text(complete(program.info(), options->typed))

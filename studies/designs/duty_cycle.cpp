@@ -53,7 +53,8 @@ DutyCycle read_duty_cycle(const std::filesystem::path& file, const Case& base) {
   std::vector<std::size_t> columns;
   for (std::size_t c = 0; c < table.header.size(); ++c) {
     if (table.header[c] == kShare) {
-      if (share != table.header.size()) throw InputError(file.string() + ":1: column \"share\" is a duplicate column");
+      if (share != table.header.size())
+        throw InputError(file.string() + ":1: column \"share\" is a duplicate column");
       share = c;
       continue;
     }

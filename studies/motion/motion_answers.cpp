@@ -31,6 +31,21 @@ std::optional<double> reached(const Trajectory& run, double first, double last) 
   return time_of(run, row - 1) + part * (time_of(run, row) - time_of(run, row - 1));
 }
 
+std::optional<MotionAnswers::Backwards> backwards(const Trajectory& run, double first,
+                                                  double last) {
+  if (last == 0 || first * last < 0) return std::nullopt;
+  MotionAnswers::Backwards found;
+  double fastest = 0;
+  for (std::size_t row = 0; row < rows_of(run); ++row) {
+    const double speed = run.state(row, StateColumn::shaft_speed);
+    fastest = std::max(fastest, std::abs(speed));
+    if (speed * last < 0 && std::abs(speed) > std::abs(found.rpm))
+      found = {speed, time_of(run, row)};
+  }
+  if (!(std::abs(found.rpm) > MotionAnswers::kLeastChange * fastest)) return std::nullopt;
+  return found;
+}
+
 std::optional<MotionAnswers::Delivery> delivery_of(const Trajectory& run) {
   if (!run.oil) return std::nullopt;
   const auto& columns = run.oil->columns;
@@ -113,6 +128,7 @@ MotionAnswers motion_answers(const Trajectory& run, const Case& the_case) {
   answers.first_rpm = run.state(0, StateColumn::shaft_speed);
   answers.last_rpm = run.state(rows_of(run) - 1, StateColumn::shaft_speed);
   answers.reached_s = reached(run, answers.first_rpm, answers.last_rpm);
+  answers.backwards = backwards(run, answers.first_rpm, answers.last_rpm);
   const ResultTable& results = run.table.results;
   if (const std::size_t torque = results.find("Td_z1_Nm"); torque < results.columns())
     for (std::size_t row = 0; row < rows_of(run); ++row)

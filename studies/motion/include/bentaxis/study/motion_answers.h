@@ -20,6 +20,14 @@ struct MotionAnswers {
   /// rows interpolated. Nothing where the change is below kLeastChange.
   std::optional<double> reached_s;
 
+  /// The shaft's fastest turning against the direction of its start and end, where that is above
+  /// kLeastChange of its largest speed.
+  struct Backwards {
+    double rpm = 0;  ///< with its sign
+    double at_s = 0;
+  };
+  std::optional<Backwards> backwards;
+
   double largest_torque = 0;    ///< Nm, drive torque Td, by magnitude, with its sign
   double largest_torque_s = 0;  ///< when
   double drive_work = 0;        ///< J, of what drives the shaft
