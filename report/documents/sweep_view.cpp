@@ -45,19 +45,19 @@ SweepView::SweepView(const SweepResult& result) : result_(result), reasons_(resu
   }
 }
 
-std::string SweepView::constant_text(std::size_t k) const {
+std::string SweepView::constant_text(std::size_t output) const {
   std::optional<double> only;
   std::size_t count = 0;
   for (std::size_t d = 0; d < designs(); ++d) {
-    if (!is_computed(result(d, k))) continue;
-    if (only && result(d, k) != *only) return "";
-    only = result(d, k);
+    if (!is_computed(result(d, output))) continue;
+    if (only && result(d, output) != *only) return "";
+    only = result(d, output);
     ++count;
   }
   if (count < 2) return "";
-  const std::string& unit = output(k).unit;
-  return fmt::format("{} is {:.5g}{} in every design: nothing that varies changes it.",
-                     output(k).name, *only, unit.empty() ? "" : " " + unit);
+  const Output& meant = plan().outputs[output];
+  return fmt::format("{} is {:.5g}{} in every design: nothing that varies changes it.", meant.name,
+                     *only, meant.unit.empty() ? "" : " " + meant.unit);
 }
 
 const std::string& SweepView::reason(std::size_t design) const { return reasons_[design]; }
