@@ -198,9 +198,10 @@ CurveDescription read_curve(TableReader in, const fs::path& folder) {
   for (TableReader& column : in.tables("column")) curve.columns.push_back(read_column(column));
   curve.ignored = in.texts("ignore");
   if (!in.texts("undecided").empty())
-    in.fail("undecided",
-            "name or size say a channel, but no curve of the model resembles it: say what each "
-            "column is in a [[curve.column]], or put it into ignore");
+    in.fail(
+        "undecided",
+        "the names or sizes suggest channels, but the curves do not resemble them: state what each "
+        "column is in a [[curve.column]], or put it into ignore");
   in.finish();
   return curve;
 }

@@ -151,7 +151,7 @@ class ExportTest(ImportTest):
         lines.write_text("\n".join(rows[:first] + [";".join(row) for row in cells]) + "\n")
         mapping.unlink()
         out = self.new(lines).out
-        self.assert_mentions(out, "Antriebsmoment", "not recognised", "say what the undecided columns are")
+        self.assert_mentions(out, "Antriebsmoment", "not recognised", "state in it what the undecided columns are")
         self.assertNotIn("--accept", out)
         self.assert_mentions(self.new(lines, "--mapping", mapping, status=BAD_INPUT).err, "undecided", "Antriebsmoment", "ignore")
         text = mapping.read_text()

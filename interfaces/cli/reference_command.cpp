@@ -57,9 +57,9 @@ int make_new(const ReferenceOptions& options) {
                          ": exists; use it by --mapping, or take it away for a new guess");
       write_whole(proposal, description);
       std::printf("%s", proposals.c_str());
-      std::printf("%s: %s it, then: bentaxis reference new .. --mapping %s%s\n", proposal.c_str(),
-                  guess.unrecognised.empty() ? "confirm or edit"
-                                             : "say what the undecided columns are, and confirm",
+      std::printf("%s: %s, then: bentaxis reference new .. --mapping %s%s\n", proposal.c_str(),
+                  guess.unrecognised.empty() ? "confirm or edit it"
+                                             : "state in it what the undecided columns are",
                   proposal.c_str(), guess.unrecognised.empty() ? " (or --accept the guess)" : "");
       return kDone;
     }

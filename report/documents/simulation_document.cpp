@@ -533,7 +533,7 @@ std::vector<std::string> answers_of(const MotionAnswers& a) {
             : fmt::format(", the change from {:.5g} to {:.5g} rpm,", a.first_rpm, a.last_rpm),
         milliseconds(*a.reached_s)));
   if (a.backwards)
-    answers.push_back(fmt::format("The shaft turns backwards meanwhile, up to {:.4g} rpm at {}.",
+    answers.push_back(fmt::format("The shaft also turns backwards: up to {:.4g} rpm at {}.",
                                   a.backwards->rpm, milliseconds(a.backwards->at_s)));
   answers.push_back(
       fmt::format("Drive torque: at most {:.4g} Nm at {}; work of the drive {:.4g} kJ.",
