@@ -89,6 +89,7 @@ class MessagesTest(WordsTest):
         sweep = ["sweep", self.case, "--output", "max:Rb1_z1", "--vary"]
         self.assertEqual(self.refused(*sweep, "operation.shaft_speed=1:2:1"),
                          'operation.shaft_speed: no such parameter; did you mean "operation.speed_rpm"?')
+        self.assertEqual(self.refused(*sweep, "speed=1:2:1"), 'speed: no such parameter; did you mean "operation.speed_rpm"?')
         line = self.refused("show", self.changed_case("tilt_deg =", "swash_angle ="))
         self.assertRegex(line, r'tilt_deg is missing: must be in \[0, 90\); is "swash_angle" in line \d+ meant\?$')
         line = self.refused("show", self.changed_case("tilt_deg = 40.0", "tilt_deg = 40.0\nspeed_rpm = 1500"))

@@ -1,6 +1,7 @@
 #include "bentaxis/files/case_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
@@ -145,9 +146,13 @@ class CaseReader {
 
   void read_key(TableReader& in, const Table& table, const Parameter& parameter) {
     const bool active = is_asked_for(parameter, registry_, result_);
+    read_.insert(table.name + "." + parameter.key);
     if (!in.has(parameter.key)) {
       if (!active) return;
-      if (!default_of(parameter, result_)) look_for_other_word(in, table, parameter);
+      if (!default_of(parameter, result_)) {
+        look_for_other_word(in, table, parameter);
+        in.missing_too(missing_after(in, table, parameter));
+      }
     }
     if (const auto* curve = std::get_if<CurveField>(&parameter.field)) {
       std::optional<std::string> fallback;
@@ -158,6 +163,18 @@ class CaseReader {
       return;
     }
     store(parameter, result_, value_in(in, parameter));
+  }
+
+  // The keys of a table after one that are missing too, of those known to be asked for by now.
+  std::vector<std::string> missing_after(TableReader& in, const Table& table,
+                                         const Parameter& first) const {
+    std::vector<std::string> keys;
+    for (const Parameter* p = &first + 1; p < table.parameters.data() + table.parameters.size();
+         ++p)
+      if ((p->active.words.empty() || read_.count(p->active.table + "." + p->active.key) > 0) &&
+          is_asked_for(*p, registry_, result_) && !default_of(*p, result_) && !in.has(p->key))
+        keys.push_back(p->key);
+    return keys;
   }
 
   // Where a required key is missing, another word for it may be there.
@@ -183,14 +200,27 @@ class CaseReader {
       std::optional<std::pair<double, double>> pair;
       if (const auto both = or_default(std::array<double, 2>())) pair = {(*both)[0], (*both)[1]};
       const auto [first, second] = in.pair(p.key, range_of(p, result_), pair);
+      for (const double value : {first, second}) require_si(in, p, value);
       return std::array{first, second};
     }
-    if (std::holds_alternative<NumberField>(p.field))
-      return in.number(p.key, range_of(p, result_), or_default(0.0));
+    if (std::holds_alternative<NumberField>(p.field)) {
+      const double value = in.number(p.key, range_of(p, result_), or_default(0.0));
+      require_si(in, p, value);
+      return value;
+    }
     std::optional<std::size_t> index;
     if (const auto word = or_default(std::string()))
       index = std::find(p.words.begin(), p.words.end(), *word) - p.words.begin();
     return p.words[in.choice(p.key, p.words, index)];
+  }
+
+  // A number of the file may leave the range of double in SI, or lose digits there.
+  static void require_si(TableReader& in, const Parameter& p, double value) {
+    const double si = p.unit.to_si == nullptr ? value : p.unit.to_si(value);
+    if (in.has(p.key) && value != 0 && !std::isnormal(si))
+      in.fail(p.key, "must be 0 or of a size between " +
+                         number_text(std::numeric_limits<double>::min()) + " and " +
+                         number_text(std::numeric_limits<double>::max()) + " in SI units");
   }
 
   void read_curve(const TableReader& in, const Parameter& parameter, const CurveField& field,
@@ -235,6 +265,7 @@ class CaseReader {
   Case result_;
   TableReader top_;
   std::map<std::string, TableReader> parents_;
+  std::set<std::string> read_;  // TABLE.KEY of what has been asked for
 };
 
 std::string trimmed(const std::string& text) {

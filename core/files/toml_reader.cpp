@@ -518,8 +518,13 @@ std::optional<TableReader::Node> TableReader::find(const std::string& key,
   known_.insert(key);
   const toml::node* node = table_ == nullptr ? nullptr : table_->table()->get(key);
   if (node != nullptr) return Node{table_->file, node};
-  if (!optional)
-    throw InputError(place(line_) + label(key) + " is missing: must be " + wanted + misspelt(key));
+  if (!optional) {
+    std::string too;
+    for (const std::string& other : missing_too_)
+      too += (too.empty() ? "; missing too: " : ", ") + other;
+    throw InputError(place(line_) + label(key) + " is missing: must be " + wanted + misspelt(key) +
+                     too);
+  }
   return std::nullopt;
 }
 

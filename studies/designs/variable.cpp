@@ -43,11 +43,11 @@ std::set<std::string> known() {
 
 // What is probably meant by a name that is none, as the end of a message.
 std::string meant_by(const std::string& name) {
-  if (const auto point = name.rfind('.'); point != std::string::npos) {
-    const auto meant =
-        meant_key(standard_registry(), name.substr(0, point), name.substr(point + 1));
-    if (meant) return "; did you mean \"" + *meant + "\"?";
-  }
+  const auto point = name.rfind('.');
+  const std::string table = point == std::string::npos ? "" : name.substr(0, point);
+  const auto meant =
+      meant_key(standard_registry(), table, name.substr(point + 1));  // npos + 1 is 0
+  if (meant) return "; did you mean \"" + *meant + "\"?";
   return suggestion(name, known());
 }
 

@@ -31,6 +31,8 @@ class TableReader {
   void expect(const std::string& key) { expected_.insert(key); }
   /// A key of the file that may be another word for `key`, which is said where that is missing.
   void may_mean(const std::string& word, const std::string& key) { other_words_[key] = word; }
+  /// Keys that the table lacks as well, which is said where one is missing.
+  void missing_too(std::vector<std::string> keys) { missing_too_ = std::move(keys); }
   /// Line of the table's heading, or of a key of it; 0 where unknown.
   int line() const { return line_; }
 
@@ -101,6 +103,7 @@ class TableReader {
   std::vector<InputEntry>* entries_ = nullptr;
   std::set<std::string> known_, expected_;
   std::map<std::string, std::string> other_words_;
+  std::vector<std::string> missing_too_;
 };
 
 /// A parsed TOML file.
