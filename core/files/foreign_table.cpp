@@ -74,6 +74,16 @@ std::size_t width_of(const Grid& grid, const Run& run) {
   return width;
 }
 
+// What most lines have: of lines of several widths the others are wrong.
+std::size_t usual_width(const Grid& grid, const Run& run) {
+  std::map<std::size_t, std::size_t> lines;
+  for (std::size_t i = run.begin; i < run.end; ++i)
+    if (!blank(grid.rows[i])) ++lines[grid.rows[i].cells.size()];
+  const auto most = std::max_element(
+      lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == lines.end() ? 0 : most->first;
+}
+
 // Texts of a line above the numbers, one per column; empty where they are not as many.
 std::vector<std::string> texts_of(const Grid& grid, const Row& row, std::size_t width) {
   std::vector<std::string> texts;
@@ -186,7 +196,7 @@ std::string title_above(const Grid& grid, std::size_t begin, std::size_t top) {
 
 void read_run(const Grid& grid, const Run& run, std::size_t top, const std::string& title,
               ForeignTable& table) {
-  const std::size_t width = width_of(grid, run);
+  const std::size_t width = width_of(grid, run), usual = usual_width(grid, run);
   Heading heading = heading_above(grid, run.begin, top, width);
   // A column of texts is none of numbers.
   std::vector<std::size_t> columns;
@@ -211,9 +221,9 @@ void read_run(const Grid& grid, const Run& run, std::size_t top, const std::stri
   for (std::size_t i = run.begin; i < run.end; ++i) {
     const Row& row = grid.rows[i];
     if (blank(row)) continue;
-    if (grid.fixed_width && row.cells.size() != width)
+    if (grid.fixed_width && row.cells.size() != usual)
       throw InputError(grid.place(row, 0) + ": " + std::to_string(row.cells.size()) +
-                       " fields, other lines have " + std::to_string(width));
+                       " fields, other lines have " + std::to_string(usual));
     std::vector<double> values;
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const Cell cell = columns[k] < row.cells.size() ? row.cells[columns[k]] : Cell{};
