@@ -13,23 +13,31 @@ namespace {
 
 std::string newtons(double value) { return rounded_text(value, 4) + " N"; }
 
+// Values apart by less are one: of the angles of those that a turn repeats the first counts.
+constexpr double kSameValue = 1e-9;
+
 // Scans a quantity that must not be negative: its smallest value is the worst.
 void scan(ValidityLimit& limit, const ResultTable& table,
           const std::function<double(std::size_t row)>& must_not_be_negative,
           const std::function<double(std::size_t row)>& shown) {
   std::size_t violated = 0;
   std::size_t counted = 0;
+  std::vector<double> values(table.rows());
   double smallest = 0;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    const double value = must_not_be_negative(row);
+    const double value = values[row] = must_not_be_negative(row);
     if (!is_computed(value)) continue;
     if (value < 0) ++violated;
     if (counted++ == 0 || value < smallest) {
       smallest = value;
       limit.worst = shown(row);
-      limit.theta_deg = table.theta_deg[row];
     }
   }
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    if (is_computed(values[row]) && values[row] <= smallest + kSameValue * std::abs(smallest)) {
+      limit.theta_deg = table.theta_deg[row];
+      break;
+    }
   limit.applicable = counted > 0;
   if (counted > 0)
     limit.violated_share = static_cast<double>(violated) / static_cast<double>(counted);

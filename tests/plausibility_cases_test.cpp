@@ -1,4 +1,5 @@
 // Plausibility of a case: which values are warned of, by the rated pump with one thing changed.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,6 +7,7 @@
 #include <iterator>
 #include <sstream>
 
+#include "bentaxis/study/comparison.h"
 #include "bentaxis/study/plausibility.h"
 #include "bentaxis/study/timing.h"
 #include "support.h"
@@ -206,6 +208,36 @@ TEST(PlausibilityCases, AMessageSaysKeyLimitAndWhatMayBeMeant) {
             "-z1, the pistons towards +z1; with the other sign? -26 would do");
   // Nothing usual explains it.
   EXPECT_THAT(text("gear.pressure_angle_deg=36"), Not(HasSubstr("would do")));
+}
+
+std::string text_of(const Case& the_case, const std::string& code) {
+  for (const auto& warning : study::plausibility(the_case).warnings)
+    if (warning.code == code) return warning.text;
+  return "";
+}
+
+// A warning before the run and the limit of validity after it are one fact.
+TEST(PlausibilityCases, AnAngleOfTheTurnIsThatOfTheComparison) {
+  for (const char* samples : {"50", "360"}) {
+    const Case lifted =
+        shipped("bap63_rated", {"block.bottom_area_mm2=1", "pressure.transition_deg=7",
+                                "operation.samples_per_revolution=" + std::string(samples)});
+    const auto limits = study::compare_models(lifted, {}, {}).limits;
+    const auto film = std::find_if(limits.begin(), limits.end(),
+                                   [](const auto& limit) { return limit.key == "film"; });
+    ASSERT_NE(film, limits.end());
+    EXPECT_THAT(text_of(lifted, "block-lifts-off"),
+                testing::StartsWith(fmt::format(
+                    "the block lifts off its plate in {:.3g} % of the turn, worst {:.4g} N at "
+                    "{:.4g} deg",
+                    100 * film->violated_share, film->worst, film->theta_deg)));
+  }
+}
+
+TEST(PlausibilityCases, APressureThatIsNotYetComputedIsSaidToBeIdeal) {
+  EXPECT_THAT(
+      text_of(shipped("bap63_rated_hydraulic", {"block.bottom_area_mm2=1"}), "block-lifts-off"),
+      testing::StartsWith("with an ideal pressure trace the block lifts off"));
 }
 
 TEST(PlausibilityCases, EveryCodeIsOneAndIsInTheListForPeople) {

@@ -65,7 +65,11 @@ int run_states(const RunCommandOptions& options, const study::PreparedCase& read
   const std::string name = to_string(options.model);
   folder.add(name + ".csv", to_csv(table));
   if (run_options.teeth) folder.add("teeth_" + name + ".csv", to_csv(teeth));
-  return finish(folder, ready.the_case.name, summary.answers());
+  std::vector<std::string> answers = summary.answers();
+  answers.emplace_back(
+      "Limits of validity (film force, its place, tooth flank, bearing) are checked over turns at "
+      "constant speed, not at given states.");
+  return finish(folder, ready.the_case.name, answers);
 }
 
 int run(const RunCommandOptions& options) {
@@ -142,7 +146,8 @@ int run(const RunCommandOptions& options) {
   }
   if (std::string play = study::free_play_answer(ready.the_case.pump); !play.empty())
     answers.push_back(std::move(play));
-  append_all(answers, study::limit_answers(ready, assumptions));
+  append_all(answers, study::limit_answers(
+                          study::limits_of_turn(ready.the_case, assumptions, ready.pressure)));
   if (ready.hydraulics)
     answers.push_back(study::timing_answer(study::timing_rows(ready.the_case, *ready.hydraulics)));
   return finish(folder, ready.the_case.name, answers);

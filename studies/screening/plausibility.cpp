@@ -17,6 +17,7 @@
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/samples.h"
 #include "bentaxis/study/timing.h"
+#include "bentaxis/study/turn_summary.h"
 
 namespace bentaxis::study {
 namespace {
@@ -31,7 +32,7 @@ constexpr double kFastest = 10;          // m/s, mean piston speed; bent-axis pu
 constexpr double kSlowest = 0.05;        // m/s
 constexpr double kCreep = 1;             // m/s, below it losses are no longer shares of the power
 constexpr double kLightLoad = 100e5;     // Pa, likewise
-constexpr int kTurnAngles = 72;
+constexpr int kTurnAngles = 72;          // of what is a mean or a share of the turn
 constexpr int kPlayAngles = 360;
 constexpr double kCardanTilt = 25;       // deg; the block's speed ripples by 20 %
 constexpr double kWidePlay = 5;          // deg, of a block that pistons carry
@@ -55,6 +56,7 @@ struct Turn {
   double lowest_pressure = 0, highest_pressure = 0;
   double land_force = 0, press_force = 0;  // N, mean
   std::vector<analytic::ValidityLimit> limits;
+  bool ideal_pressure = false;  // instead of that of the oil, which is still to be computed
 };
 
 // Where pistons carry the block: its free play over a turn, and how fast the piston that carries on
@@ -118,20 +120,20 @@ double land_area(const PortPlate& plate, const PortArc& arc) {
 
 std::optional<Turn> turn_of(const Facts& f) {
   Case c = f.the_case;
-  c.operation.samples_per_revolution = kTurnAngles;
   c.operation.revolutions = 1;
-  if (c.pressure.kind == PressureKind::hydraulic) {
+  Turn turn;
+  turn.ideal_pressure = c.pressure.kind == PressureKind::hydraulic;
+  if (turn.ideal_pressure) {
     c.pressure.kind = PressureKind::ideal;
     c.pressure.transition_deg = kIdealTransition;
     c.pressure.delivery_start_deg = 180;
   }
   try {
     const PressureTrace trace(c.pressure);
-    const Samples samples = sample_case(c, trace);
-    const ResultTable table = analytic::run(c, c.analytic, samples);
+    turn.limits = limits_of_turn(c, c.analytic, trace);
+    c.operation.samples_per_revolution = kTurnAngles;
+    const ResultTable table = analytic::run(c, c.analytic, sample_case(c, trace));
     const ChannelLayout at(c.pump);
-    Turn turn;
-    turn.limits = analytic::check_validity(c, c.analytic, samples, table);
     const std::size_t rows = table.rows();
     turn.lowest_pressure = turn.highest_pressure = trace(table.theta_deg[0]);
     double work = 0;
@@ -349,6 +351,11 @@ std::string viscous_torque(const Facts& f, const char* key, double coefficient, 
       "{:.4g} Nm",
       key, coefficient * kRadPerSecondPerRpm, torque, f.speed, share_in_words, f.full_torque,
       torque * kRadPerSecondPerRpm);
+}
+
+// What numbers of the turn rest on, where it is not what a run will find.
+const char* by_ideal_pressure(const Facts& f) {
+  return f.turn->ideal_pressure ? "with an ideal pressure trace " : "";
 }
 
 // A limit of validity that is violated for more than a share of the turn.
@@ -1089,12 +1096,12 @@ const Check kChecks[] = {
        const auto* limit = violated(f, "Fh reversed", kShareOfTurn);
        if (limit == nullptr) return "";
        return fmt::format(
-           "the block lifts off its plate in {:.3g} % of the turn, worst {:.4g} N at {:.4g} deg: "
+           "{}the block lifts off its plate in {:.3g} % of the turn, worst {:.4g} N at {:.4g} deg: "
            "block balance (push of the lands over bottom areas and spring) is {:.3g} (lands {:.4g} "
            "N, bottom_area_mm2 = {:.6g} and spring_force_N = {:.6g} make {:.4g} N)",
-           100 * limit->violated_share, limit->worst, limit->theta_deg, block_balance(*f.turn),
-           f.turn->land_force, mm2(f.pump.block.bottom_area), f.pump.block.spring_force,
-           f.turn->press_force);
+           by_ideal_pressure(f), 100 * limit->violated_share, limit->worst, limit->theta_deg,
+           block_balance(*f.turn), f.turn->land_force, mm2(f.pump.block.bottom_area),
+           f.pump.block.spring_force, f.turn->press_force);
      }},
     {"block-overpressed",
      "block balance below 0.3 at more than 100 bar: the film would have to carry the rest",
@@ -1115,10 +1122,11 @@ const Check kChecks[] = {
        const auto* limit = violated(f, "(xh, yh) outside r4", kOutsideShare);
        if (limit == nullptr) return "";
        return fmt::format(
-           "the film force acts outside of the plate (r4 = {:.4g} mm) in {:.3g} % of the turn, up "
+           "{}the film force acts outside of the plate (r4 = {:.4g} mm) in {:.3g} % of the turn, "
+           "up "
            "to {:.4g} mm from its axis at {:.4g} deg: the block tips; block balance is {:.3g}",
-           mm(f.pump.port_plate->r4), 100 * limit->violated_share, limit->worst, limit->theta_deg,
-           block_balance(*f.turn));
+           by_ideal_pressure(f), mm(f.pump.port_plate->r4), 100 * limit->violated_share,
+           limit->worst, limit->theta_deg, block_balance(*f.turn));
      }},
     {"tooth-force-flank",
      "one flank, and Rcs < 0 in more than 5 % of the turn, but at standstill: the other flank "
@@ -1128,10 +1136,10 @@ const Check kChecks[] = {
        const auto* limit = violated(f, "Rcs < 0", kShareOfTurn);
        if (limit == nullptr) return "";
        return fmt::format(
-           "the tooth force is on the other flank in {:.3g} % of the turn, worst {:.4g} N at "
+           "{}the tooth force is on the other flank in {:.3g} % of the turn, worst {:.4g} N at "
            "{:.4g} deg: the block leads the shaft (block_viscous_Nm_per_rpm = {:.4g} holds it "
            "back)",
-           100 * limit->violated_share, limit->worst, limit->theta_deg,
+           by_ideal_pressure(f), 100 * limit->violated_share, limit->worst, limit->theta_deg,
            f.pump.friction.block_viscous * kRadPerSecondPerRpm);
      }},
     // Hydraulics

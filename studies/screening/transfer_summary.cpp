@@ -16,6 +16,7 @@ namespace {
 // A piston carries more than another where its wall force exceeds that one's by this share:
 // opposite pistons of an even number may share to round-off.
 constexpr double kSameForce = 1e-6;
+constexpr double kSamePeak = 1e-9;  // of peaks that a turn repeats the first counts
 constexpr std::size_t kNamedSectors = 4;
 constexpr int kPlayAngles = 720;
 
@@ -80,8 +81,7 @@ TransferSummary::TransferSummary(const PumpParameters& pump, const std::vector<C
 
 TransferSummary::TransferSummary(const PumpParameters& pump, const ResultTable& table)
     : TransferSummary(pump, table.channels) {
-  for (std::size_t row = 0; row < table.rows(); ++row)
-    add(table.theta_deg[row], &table.values[row * table.columns()]);
+  table.for_each_row([this](double theta_deg, const double* values) { add(theta_deg, values); });
 }
 
 // The vertex of a parabola through three rows where the middle one is an extreme.
@@ -117,7 +117,8 @@ void TransferSummary::add(double theta_deg, const double* values) {
     speed_sum_ += values[speed_column_];
   }
   const auto larger = [&](Peak& peak, double value) {
-    if (is_computed(value) && !(value <= peak.value)) peak = {value, theta_deg, 0};
+    if (is_computed(value) && !(value <= peak.value * (1 + kSamePeak)))
+      peak = {value, theta_deg, 0};
   };
   if (couple_columns_[0] != missing_) {
     const double x = values[couple_columns_[0]], y = values[couple_columns_[1]],

@@ -17,7 +17,6 @@ namespace {
 // later.
 constexpr double kSamePeak = 1e-9;
 constexpr std::size_t kNamed = 4;  // forces in a sentence
-constexpr int kAngles = 720;
 
 bool exceeds(double value, double peak) {
   return is_computed(value) && (!is_computed(peak) || value > peak * (1 + kSamePeak));
@@ -58,8 +57,7 @@ TurnSummary::TurnSummary(const std::vector<Channel>& channels)
 }
 
 TurnSummary::TurnSummary(const ResultTable& table) : TurnSummary(table.channels) {
-  for (std::size_t row = 0; row < table.rows(); ++row)
-    add(table.theta_deg[row], &table.values[row * table.columns()]);
+  table.for_each_row([this](double theta_deg, const double* values) { add(theta_deg, values); });
 }
 
 void TurnSummary::add(double theta_deg, const double* values) {
@@ -154,12 +152,13 @@ std::string timing_answer(const std::vector<TimingRow>& rows) {
       names.size(), rows.size(), fmt::join(names, ", "));
 }
 
-std::vector<std::string> limit_answers(const PreparedCase& ready, const Assumptions& assumptions) {
-  Case thin = ready.the_case;
-  thin.operation.samples_per_revolution = std::min(kAngles, thin.operation.samples_per_revolution);
-  const Samples samples = sample_case(thin, ready.pressure);
-  return limit_answers(analytic::check_validity(thin, assumptions, samples,
-                                                analytic::run(thin, assumptions, samples)));
+std::vector<analytic::ValidityLimit> limits_of_turn(Case the_case, const Assumptions& assumptions,
+                                                    const PressureTrace& pressure) {
+  int& angles = the_case.operation.samples_per_revolution;
+  angles = std::min(kMaxAnglesOfLimits, angles);
+  const Samples samples = sample_case(the_case, pressure);
+  return analytic::check_validity(the_case, assumptions, samples,
+                                  analytic::run(the_case, assumptions, samples));
 }
 
 }  // namespace bentaxis::study

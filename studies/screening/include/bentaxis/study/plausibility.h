@@ -34,8 +34,8 @@ struct Plausibility {
 };
 
 /// Looks at a case before it is run: its numbers one by one and together, and one turn of the
-/// analytic model for what carries block and gear. Where the pressure is still to be computed the
-/// turn is made with an ideal trace between the port pressures. Milliseconds.
+/// analytic model, at its own angles, for what carries block and gear. Where the pressure is still
+/// to be computed the turn is made with an ideal trace between the port pressures. Milliseconds.
 /// @throws InputError where `[plausibility] meant` names no check or gives no reason
 Plausibility plausibility(const Case& the_case);
 

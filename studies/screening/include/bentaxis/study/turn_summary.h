@@ -69,8 +69,10 @@ std::string not_valid_text(const std::vector<analytic::ValidityLimit>& limits);
 /// Which verdicts on the timing of the ports exceed their limits, in a sentence.
 std::string timing_answer(const std::vector<TimingRow>& rows);
 
-/// limit_answers() of one turn by the analytic model at 720 angles at most: of a run that is not
-/// kept.
-std::vector<std::string> limit_answers(const PreparedCase& ready, const Assumptions& assumptions);
+/// Limits of one turn by the analytic model, of a run that is not kept or not yet made: at the
+/// angles of the case, so that it says what a comparison of the case says, or at the most of them.
+inline constexpr int kMaxAnglesOfLimits = 3600;
+std::vector<analytic::ValidityLimit> limits_of_turn(Case the_case, const Assumptions& assumptions,
+                                                    const PressureTrace& pressure);
 
 }  // namespace bentaxis::study
