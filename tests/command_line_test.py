@@ -1044,6 +1044,14 @@ class LargeRunTest(ProgramTest):
         self.assertEqual(process.returncode, DONE)
         return used.ru_maxrss * 1024
 
+    def test_a_comparison_holds_less_than_both_tables(self):
+        """Of very many rows one model's values at a time: the other's lie in a file that has no name."""
+        rows = (self.ROWS, 3 * self.ROWS)
+        used = [self.memory_of("compare", self.case(f"{n}.toml", **{"operation.samples_per_revolution": n}), "--out", str(n)) for n in rows]
+        two_tables = 2 * 78 * 8
+        self.assertLess(used[1] - used[0], (rows[1] - rows[0]) * two_tables)
+        self.assertEqual([file.name for file in (self.folder / str(rows[1])).iterdir() if file.name.startswith(".")], [])
+
     def page_of(self, folder):
         page = (self.folder / folder / "report.html").read_text()
         found = {name: json.loads(text) for name, text in

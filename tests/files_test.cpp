@@ -17,6 +17,7 @@
 #include <functional>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <string>
@@ -24,6 +25,7 @@
 #include <vector>
 
 #include "bentaxis/files/case_file.h"
+#include "bentaxis/files/csv.h"
 #include "bentaxis/files/foreign_table.h"
 #include "bentaxis/files/input_file.h"
 #include "bentaxis/files/input_log.h"
@@ -34,10 +36,12 @@
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/files/run_lock.h"
 #include "bentaxis/files/staging_folder.h"
+#include "bentaxis/files/stored_values.h"
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/files/whole_file.h"
 #include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 
 namespace bentaxis {
 namespace {
@@ -53,6 +57,76 @@ std::vector<std::string> lines_of(const std::string& text) {
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   return lines;
+}
+
+// Rows of two blocks and a part; values that no other place has, one not computed.
+ResultTable many_rows() {
+  ResultTable table;
+  table.name = "many";
+  table.channels.resize(3);
+  for (std::size_t c = 0; c < 3; ++c) table.channels[c].name = "c" + std::to_string(c);
+  for (std::size_t row = 0; row < 2 * StoredValues::kBlock + 7; ++row) {
+    table.theta_deg.push_back(static_cast<double>(row));
+    for (std::size_t c = 0; c < 3; ++c)
+      table.values.push_back(static_cast<double>(3 * row + c) / 7);
+  }
+  table.values[4] = not_computed();
+  return table;
+}
+
+TEST(StoredValuesTest, AreReadAsTheyWere) {
+  const fs::path folder = fs::temp_directory_path() / ("stored-" + std::to_string(getpid()));
+  fs::create_directory(folder);
+  const ResultTable whole = many_rows();
+  std::optional<ResultTable> table = whole;
+  ASSERT_TRUE(store_values(*table, folder));
+  EXPECT_TRUE(fs::is_empty(folder));  // it has no name
+  EXPECT_TRUE(table->values.empty());
+  const ResultTable copy = *table;
+  table.reset();
+  for (std::size_t row = 0; row < whole.rows(); ++row)
+    for (std::size_t c = 0; c < whole.columns(); ++c)
+      if (row != 1 || c != 1) {
+        ASSERT_EQ(copy.at(row, c), whole.at(row, c)) << row << " " << c;
+      }
+  EXPECT_FALSE(is_computed(copy.at(1, 1)));
+  EXPECT_EQ(to_csv(copy), to_csv(whole));
+  EXPECT_EQ(to_csv(every_row(copy, 1000)), to_csv(every_row(whole, 1000)));
+  EXPECT_EQ(every_row(copy, 1000).values.size(), 3u * 3);
+  const auto last = [](const Channel& channel) { return channel.name == "c2"; };
+  EXPECT_EQ(select_channels(copy, last).values, select_channels(whole, last).values);
+  std::size_t rows = 0;
+  copy.for_each_row([&](double theta_deg, const double* values) {
+    ASSERT_EQ(theta_deg, static_cast<double>(rows));
+    ASSERT_EQ(values[2], whole.at(rows, 2));
+    ++rows;
+  });
+  EXPECT_EQ(rows, whole.rows());
+  fs::remove(folder);
+}
+
+TEST(StoredValuesTest, StayInTheMemoryWhereNoFileCanBeMade) {
+  ResultTable table = many_rows();
+  EXPECT_FALSE(store_values(table, "/proc/no such folder"));
+  EXPECT_EQ(table.at(5, 1), many_rows().at(5, 1));
+  EXPECT_FALSE(table.values.empty());
+}
+
+TEST(StoredValuesTest, StayInTheMemoryWhereTheDiskIsFull) {
+  const fs::path folder = fs::temp_directory_path() / ("stored-full-" + std::to_string(getpid()));
+  fs::create_directory(folder);
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit little{30'000, before.rlim_max};  // a block of three columns is 24 576 bytes
+  setrlimit(RLIMIT_FSIZE, &little);
+  ResultTable table = many_rows();
+  EXPECT_FALSE(store_values(table, folder));
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_FALSE(table.values.empty());
+  EXPECT_EQ(table.at(9000 % table.rows(), 2), many_rows().at(9000 % table.rows(), 2));
+  EXPECT_TRUE(fs::is_empty(folder));
+  fs::remove(folder);
 }
 
 TEST(ModuleTest, WhatIsMissingIsNamedWithTheFoldersThatWereSearched) {

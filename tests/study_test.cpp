@@ -52,6 +52,44 @@ Case shipped_case() {
   return the_case;
 }
 
+// More rows than are held in the memory where there is a folder to keep them in.
+TEST(Comparison, ManyRowsInAFileAreThoseInTheMemory) {
+  Case many = shipped_case();
+  many.operation.samples_per_revolution = 10'000;
+  study::ComparisonOptions options;
+  const study::ComparisonResult held = study::compare_models(many, {}, options);
+  options.scratch = std::filesystem::temp_directory_path();
+  const study::ComparisonResult kept = study::compare_models(many, {}, options);
+  for (const auto table :
+       {&study::ComparisonResult::analytic, &study::ComparisonResult::multibody}) {
+    EXPECT_FALSE((held.*table).stored);
+    EXPECT_TRUE((kept.*table).stored);
+    for (std::size_t row = 0; row < 10'000; row += 7)
+      for (std::size_t c = 0; c < (held.*table).columns(); ++c) {
+        const double value = (held.*table).at(row, c);
+        if (!is_computed(value)) continue;
+        // Simbody beside another run of itself gives other last digits at some angles.
+        const Channel& channel = held.analytic.channels[c];
+        const double last_digits = table == &study::ComparisonResult::analytic
+                                       ? 0
+                                       : 1e-10 * held.analytic.peak(channel.group);
+        ASSERT_NEAR((kept.*table).at(row, c), value, last_digits) << row << " " << channel.name;
+      }
+  }
+  EXPECT_TRUE(kept.budget->analytic.stored);
+  EXPECT_TRUE(kept.budget->multibody.stored);
+  ASSERT_EQ(kept.comparison.channels.size(), held.comparison.channels.size());
+  for (std::size_t c = 0; c < held.comparison.channels.size(); ++c) {
+    EXPECT_EQ(kept.comparison.channels[c].verdict, held.comparison.channels[c].verdict);
+    EXPECT_EQ(kept.comparison.channels[c].own_peak, held.comparison.channels[c].own_peak);
+    EXPECT_EQ(kept.comparison.channels[c].peak, held.comparison.channels[c].peak);
+    EXPECT_EQ(kept.comparison.channels[c].mean[0], held.comparison.channels[c].mean[0]);
+  }
+  ASSERT_EQ(kept.limits.size(), held.limits.size());
+  for (std::size_t i = 0; i < held.limits.size(); ++i)
+    EXPECT_EQ(kept.limits[i].worst, held.limits[i].worst);
+}
+
 // Of a group in one model: channels by how much of what is allowed they differ.
 study::GroupLine line_of(const std::string& model, const std::string& group,
                          const std::vector<double>& severities) {

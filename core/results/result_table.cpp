@@ -66,6 +66,14 @@ double ResultTable::peak(const std::string& group) const {
   return peak;
 }
 
+void ResultTable::for_each_row(const std::function<void(double, const double*)>& use) const {
+  std::vector<double> row(columns());
+  for (std::size_t i = 0; i < rows(); ++i) {
+    for (std::size_t c = 0; c < columns(); ++c) row[c] = at(i, c);
+    use(theta_deg[i], row.data());
+  }
+}
+
 ResultTable tabulate(const std::string& name, const ChannelLayout& layout, const Samples& samples,
                      const EvaluateRow& evaluate, const Progress& progress) {
   ResultTable table;
@@ -94,6 +102,26 @@ void stream_rows(const std::string& name, const ChannelLayout& layout, const Cas
       if (progress) progress(static_cast<double>(first) / static_cast<double>(rows) + share * done);
     });
   }
+}
+
+ResultTable select_rows(const ResultTable& table, const std::vector<std::size_t>& rows) {
+  ResultTable selected;
+  selected.name = table.name;
+  selected.channels = table.channels;
+  selected.provenance = table.provenance;
+  selected.reserve_rows(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    selected.theta_deg.push_back(table.theta_deg[rows[i]]);
+    for (std::size_t c = 0; c < table.columns(); ++c)
+      selected.values.push_back(table.at(rows[i], c));
+  }
+  return selected;
+}
+
+ResultTable every_row(const ResultTable& table, std::size_t step) {
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < table.rows(); row += step) rows.push_back(row);
+  return select_rows(table, rows);
 }
 
 ResultTable select_channels(const ResultTable& table,

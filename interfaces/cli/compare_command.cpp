@@ -147,6 +147,7 @@ int compare(const CompareOptions& options) {
   how.with = options.with;
   how.split_transfer = transfer;
   how.loads = true;
+  how.scratch = folders.tables().path();
   study::EngineOptions engines = options.engines;
   if (options.engine_steps != 0) engines.steps = options.engine_steps;
   if (const auto data = shipped_reference_data()) {

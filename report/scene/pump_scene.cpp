@@ -456,20 +456,9 @@ report::Curves curves_of(const std::vector<SceneRun>& runs, const SceneMotion* m
   return curves;
 }
 
-std::vector<double> every(std::size_t step, const std::vector<double>& values,
-                          std::size_t columns = 1) {
+std::vector<double> every(std::size_t step, const std::vector<double>& values) {
   std::vector<double> thin;
-  for (std::size_t at = 0; at < values.size(); at += step * columns)
-    thin.insert(thin.end(), values.begin() + at, values.begin() + at + columns);
-  return thin;
-}
-
-ResultTable every(std::size_t step, const ResultTable& table) {
-  ResultTable thin{table.name,
-                   table.channels,
-                   every(step, table.theta_deg),
-                   every(step, table.values, table.columns()),
-                   {}};
+  for (std::size_t at = 0; at < values.size(); at += step) thin.push_back(values[at]);
   return thin;
 }
 
@@ -540,7 +529,7 @@ report::Scene pump_scene(const Case& the_case, const std::vector<SceneRun>& runs
   std::deque<std::pair<ResultTable, BodyLoadTable>> thin;
   std::vector<SceneRun> thinned;
   for (const SceneRun& run : runs) {
-    thin.emplace_back(every(step, run.table), every(step, run.loads));
+    thin.emplace_back(every_row(run.table, step), every(step, run.loads));
     thinned.push_back({thin.back().first, thin.back().second});
   }
   SceneMotion some;

@@ -53,16 +53,17 @@ std::optional<std::pair<std::string, ResultTable>> stored_curve(
 // Rows of a table at the angles of another, if it has them all; else none.
 ResultTable at_angles(const ResultTable& table, const std::vector<double>& angles) {
   constexpr double kSameAngle = 1e-9;  // deg
-  ResultTable some = table;
-  some.theta_deg.clear();
-  some.values.clear();
+  std::vector<double> found;
+  std::vector<std::size_t> rows;
   for (const double angle : angles)
     for (std::size_t row = 0; row < table.rows(); ++row)
       if (std::abs(table.theta_deg[row] - angle) <= kSameAngle) {
-        some.theta_deg.push_back(angle);
-        for (std::size_t c = 0; c < table.columns(); ++c) some.values.push_back(table.at(row, c));
+        found.push_back(angle);
+        rows.push_back(row);
         break;
       }
+  ResultTable some = select_rows(table, rows);
+  some.theta_deg = std::move(found);
   return some;
 }
 
@@ -80,10 +81,9 @@ struct Turn {
 ResultTable table_of(const std::string& name, const Turn& turn, const engines::Answer& answer,
                      const ResultTable& like) {
   const engines::Mechanism& mechanism = turn.mechanism;
-  ResultTable table = like;
-  table.name = name;
-  table.provenance = {{{"method", answer.text}}, answer.seconds};
-  std::fill(table.values.begin(), table.values.end(), not_computed());
+  ResultTable table{
+      name, like.channels, like.theta_deg, {}, {{{"method", answer.text}}, answer.seconds}};
+  table.values.assign(table.rows() * table.columns(), not_computed());
   const std::size_t width = mechanism.actions.size() + mechanism.supports.size();
   for (const engines::Reading& reading : mechanism.readings) {
     const std::size_t column = table.find(reading.channel);

@@ -40,17 +40,6 @@ std::size_t stride_of(const compare::ReferenceDescription& description, const Ca
   return all % theirs == 0 ? static_cast<std::size_t>(all / theirs) : 1;
 }
 
-ResultTable every(std::size_t stride, const ResultTable& table) {
-  ResultTable some = table;
-  some.theta_deg.clear();
-  some.values.clear();
-  for (std::size_t row = 0; row < table.rows(); row += stride) {
-    some.theta_deg.push_back(table.theta_deg[row]);
-    for (std::size_t c = 0; c < table.columns(); ++c) some.values.push_back(table.at(row, c));
-  }
-  return some;
-}
-
 // The reverse: not computed between the rows.
 ResultTable spread(std::size_t stride, const ResultTable& some,
                    const std::vector<double>& theta_deg) {
@@ -98,7 +87,7 @@ void hold_to_curves(const compare::ReferenceDescription& description, const Case
     const ReferenceRun run = result_of(which);
     const std::size_t stride = stride_of(description, the_case);
     const compare::Judgement judgement =
-        compare::judge(description, curves, every(stride, run.table), run.zero_scales);
+        compare::judge(description, curves, every_row(run.table, stride), run.zero_scales);
     if (judgement.resampled)
       outcome.notes.push_back(fmt::format(
           "{}: the reference has other angles than the case and was resampled, which adds an error "

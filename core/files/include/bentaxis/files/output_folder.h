@@ -56,6 +56,8 @@ class OutputFolder {
   /// @throws InputError
   std::filesystem::path reserve(const std::string& name);
 
+  /// The folder.
+  const std::filesystem::path& path() const { return folder_; }
   /// Names of the files so far, in the order in which they were added.
   std::vector<std::string> names() const;
 

@@ -48,6 +48,9 @@ struct ComparisonOptions {
   bool split_transfer = false;
   std::shared_ptr<const EngineOptions> engines;  ///< to run beside driven models; none: none
   bool loads = false;  ///< all loads on the bodies too, of a driven run of full pumps
+  /// Folder where values of very many rows are kept meanwhile instead of in the memory (a file
+  /// without a name, which is gone with the last table that reads it); empty: none are.
+  std::filesystem::path scratch;
 };
 
 /// Assumptions in words: name and value.
@@ -102,6 +105,9 @@ struct ComparisonResult {
   /// That, and both models agree with the reference where there is one, and with the engines that
   /// have given results: what the exit status says.
   bool passes() const;
+  /// Whether the models agree with each other and not with a reference, whatever engines say: the
+  /// headline of a report then says how far they are from it.
+  bool agrees_but_for_reference() const;
   /// Why the models differ, where the round-off that was estimated for this case is at least a
   /// tenth of each difference: an estimate of the first order at some angles is no closer.
   std::optional<DifferenceCause> cause() const;
