@@ -27,7 +27,7 @@ std::string text_table(const compare::Comparison& comparison) {
   std::stable_sort(rows.begin(), rows.end(),
                    [&](const auto* a, const auto* b) { return rank(a) > rank(b); });
   std::string text = fmt::format("{:<16} {:>12} {:>4}  {:>12} {:>10} {:>7}  {}\n", "worst channel",
-                                 "peak", "", "difference", "over peak", "digits", "verdict");
+                                 "vector peak", "", "difference", "over peak", "digits", "verdict");
   for (const auto* c : rows) {
     if (!c->compared())
       text += fmt::format("{:<16} {:>12.5g} {:>4}  {:>12} {:>10} {:>7}  {}\n", c->channel.name,

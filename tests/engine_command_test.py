@@ -73,6 +73,13 @@ class EngineTest(ProgramTest):
         self.assertFalse(done.report["verdict"]["agrees"])
         self.assertTrue(done.report["verdict"]["models_agree"])
 
+    def test_an_engine_that_differs_says_nothing_of_a_reference(self):
+        done = self.compare("gives_zero", OUT_OF_TOLERANCE, "--with", program.REPO / "reference_data/golden/bap63_rated")
+        self.assertTrue(done.report["verdict"]["reference"]["agrees"])
+        self.assertNotIn("differ from", done.report["verdict"]["headline"])
+        self.assertEqual(done.report["verdict"]["word"], "An engine differs")
+        self.assertRegex("\n".join(done.report["verdict"]["answers"]), r"bap63_rated agrees: (\d+) of \1 reactions")
+
     def test_time_against_error(self):
         """Of a module that gives zeros and has no settings: one run for each number of steps."""
         done = self.compare("gives_zero", OUT_OF_TOLERANCE, "--engine-sweep")

@@ -33,7 +33,7 @@ report::Verdict verdict_of(const ComparisonResult& r) {
   verdict.not_valid = not_valid_text(r.limits);
   if (r.with) {
     verdict.models_agree = r.agrees();
-    if (r.agrees() && !r.passes()) {
+    if (r.agrees_but_for_reference()) {
       verdict.word = "Reference differs";
       verdict.headline += fmt::format(" They differ from {}: {}", r.with->name, held_text(*r.with));
     }

@@ -33,8 +33,9 @@ const char* found_text(const Outcome& outcome) {
   return " could not be computed: ";
 }
 
-void add_outcome(std::vector<std::string>& sentences, const Outcome& outcome) {
-  sentences.push_back(outcome.name + found_text(outcome) + held_text(outcome));
+void add_outcome(std::vector<std::string>& sentences, const Outcome& outcome,
+                 bool in_headline = false) {
+  if (!in_headline) sentences.push_back(outcome.name + found_text(outcome) + held_text(outcome));
   if (outcome.explanation) sentences.push_back(outcome.name + ": " + outcome.explanation->text());
 }
 
@@ -75,16 +76,20 @@ std::string lost_digits_text(const std::vector<RoundingLine>& lines) {
 
 std::vector<std::string> comparison_answers(const ComparisonResult& r) {
   std::vector<std::string> sentences;
-  if (r.with) add_outcome(sentences, *r.with);
+  if (r.with) add_outcome(sentences, *r.with, r.agrees_but_for_reference());
   // Where an engine differs the headline says so.
   if (r.engines && r.engines->agrees()) sentences.push_back(r.engines->headline());
   if (r.split)
     for (std::size_t a = 0; a < r.split->assumptions.size(); ++a)
       if (std::string text = contribution_text(*r.split, a); !text.empty())
         sentences.push_back(std::move(text));
-  append_all(sentences, TurnSummary(r.analytic).answers());
   const PumpParameters& pump = r.first.the_case.pump;
-  append_all(sentences, TransferSummary(pump, r.analytic).answers());
+  std::vector<std::string> of_turn = TurnSummary(r.analytic).answers();
+  append_all(of_turn, TransferSummary(pump, r.analytic).answers());
+  // Under unequal assumptions the other model's are others.
+  if (r.split)
+    for (std::string& sentence : of_turn) sentence.insert(0, "By the analytic model: ");
+  append_all(sentences, std::move(of_turn));
   if (std::string play = free_play_answer(pump); !play.empty())
     sentences.push_back(std::move(play));
   append_all(sentences, limit_answers(r.limits));
