@@ -480,6 +480,12 @@ TEST(MappingMatches, SignsOfSingleComponents) {
   EXPECT_NEAR(cost_without_signs(p, axes, 2, theirs), 0, 1e-7);
   EXPECT_NEAR(cost_without_signs(p, axes, 1.5, theirs), 0.25, 1e-12);
   EXPECT_NEAR(cost_without_signs(p, axes, 3, theirs), 0.5, 1e-12);
+  EXPECT_NEAR(cost_of_mixed(p, axes, 2, theirs), 0, 1e-7);
+  // The same two exchanged.
+  std::swap(theirs[0], theirs[1]);
+  std::swap(p.theirs_ours[0], p.theirs_ours[1]);
+  EXPECT_GT(cost_without_signs(p, axes, 2, theirs), 0.3);
+  EXPECT_NEAR(cost_of_mixed(p, axes, 2, theirs), 0, 1e-7);
 }
 
 // ---- Frames and numbers
@@ -999,6 +1005,99 @@ TEST(MappingRecords, AWrongSignOfOneComponentIsComparedNotLeftOut) {
   EXPECT_LT(found.proposals[1].difference, 1e-5);
 }
 
+// A force on the block, those on two pistons and the torque, one column of them wrong.
+MappingGuess with_wrong(const std::string& column, const Curve& at) {
+  std::vector<Column> columns = {{"Bx", "N", of("Rb1_x1_N")},    {"By", "N", of("Rb1_y1_N")},
+                                 {"Bz", "N", of("Rb1_z1_N")},    {"f1_x", "N", of("Rs_1_x2_N")},
+                                 {"f1_y", "N", of("Rs_1_y2_N")}, {"f3_x", "N", of("Rs_3_x2_N")},
+                                 {"f3_y", "N", of("Rs_3_y2_N")}, {"Td", "Nm", of("Td_z1_Nm")}};
+  for (Column& one : columns)
+    if (one.name == column) one.at = at;
+  return guess(record(1, 40, columns));
+}
+
+// A vector with one bad component is no other curve of the pump: it must not go unseen.
+TEST(MappingRecords, AVectorOfWhichSomeFitsMustBeDecided) {
+  const Curve nothing = [](double) { return 0.0; };
+  for (const Curve& bad : {nothing, of("Rb1_y1_N", 1e-3), of("Rb1_y1_N", 5)}) {
+    const MappingGuess found = with_wrong("By", bad);
+    EXPECT_EQ(found.curve.angle.offset_deg, 40);
+    EXPECT_THAT(found.unrecognised, ElementsAre("Bx", "By", "Bz"));
+    EXPECT_THAT(found.ignored,
+                testing::Contains(Pair("By", testing::HasSubstr("Bx looks like Rb1_x1_N"))));
+    EXPECT_EQ(found.recognised(), 5U);
+  }
+}
+
+// Whichever of the components it is: its vector is wrong, and no frame that turns the others.
+TEST(MappingRecords, AWrongSignStaysOnItsVector) {
+  for (const auto& [column, name] : std::vector<std::pair<std::string, std::string>>{
+           {"Bx", "Rb1_x1_N"}, {"By", "Rb1_y1_N"}, {"Bz", "Rb1_z1_N"}}) {
+    const MappingGuess found = with_wrong(column, of(name, -1));
+    SCOPED_TRACE(column);
+    EXPECT_TRUE(found.curve.vectors.empty());  // nothing is turned
+    EXPECT_EQ(found.recognised(), 8U);
+    for (const MappingProposal& p : found.proposals) {
+      EXPECT_EQ(p.difference > 1e-4, p.ours == "Rb1") << p.ours;
+      EXPECT_EQ(p.sign, 1) << p.ours;
+    }
+  }
+}
+
+TEST(MappingRecords, TwoComponentsExchangedMustBeDecided) {
+  std::vector<Column> columns = {{"Bx", "N", of("Rb1_y1_N")},    {"By", "N", of("Rb1_x1_N")},
+                                 {"Bz", "N", of("Rb1_z1_N")},    {"f1_x", "N", of("Rs_1_x2_N")},
+                                 {"f1_y", "N", of("Rs_1_y2_N")}, {"f3_x", "N", of("Rs_3_x2_N")},
+                                 {"f3_y", "N", of("Rs_3_y2_N")}, {"Td", "Nm", of("Td_z1_Nm")}};
+  const MappingGuess found = guess(record(1, 40, columns));
+  for (const MappingProposal& p : found.proposals)
+    EXPECT_EQ(p.difference > 1e-4, p.ours == "Rb1") << p.ours;
+  for (const auto& vector : found.curve.vectors) EXPECT_EQ(vector.ours, "Rb1");
+}
+
+TEST(MappingRecords, ACurveThatLagsDoesNotMoveTheOthers) {
+  const MappingGuess found = with_wrong("Td", [](double t) { return ours("Td_z1_Nm", t - 5); });
+  EXPECT_EQ(found.curve.angle.offset_deg, 40);
+  for (const MappingProposal& p : found.proposals)
+    EXPECT_EQ(p.difference > 1e-4, p.ours == "Td_z1_Nm") << p.ours;
+}
+
+// What pressure drives is late, what turns with the shaft is not: no shift of the file.
+TEST(MappingRecords, ASmallShiftIsTakenOnlyWhereItFits) {
+  const auto first_harmonic = [](const std::string& name) {
+    double cosine = 0, sine = 0;
+    for (int deg = 0; deg < 360; ++deg) {
+      cosine += ours(name, deg) * std::cos(radians(deg)) / 180;
+      sine += ours(name, deg) * std::sin(radians(deg)) / 180;
+    }
+    return [=](double t) { return cosine * std::cos(radians(t)) + sine * std::sin(radians(t)); };
+  };
+  const auto late = [&](bool all) {
+    std::vector<Column> columns;
+    for (const auto& [theirs, name] : std::vector<std::pair<std::string, std::string>>{
+             {"Bx", "Rb1_x1_N"}, {"By", "Rb1_y1_N"}, {"Bz", "Rb1_z1_N"}, {"Td", "Td_z1_Nm"}})
+      columns.push_back({theirs, "", [name = name, all, first = first_harmonic(name)](double t) {
+                           return ours(name, t - 3) + (all ? 0 : first(t) - first(t - 3));
+                         }});
+    return guess(record(1, 0, columns));
+  };
+  const MappingGuess mixed = late(false);
+  EXPECT_EQ(mixed.curve.angle.offset_deg, 0);
+  EXPECT_LT(mixed.shift_not_taken_deg, -0.5);
+  EXPECT_GT(mixed.shift_not_taken_deg, -2.5);
+  const MappingGuess whole = late(true);
+  EXPECT_EQ(whole.curve.angle.offset_deg, -3);
+  EXPECT_EQ(whole.shift_not_taken_deg, 0);
+}
+
+TEST(MappingRecords, AColumnWithSomeEmptyFieldsMustBeDecided) {
+  ForeignTable table = record(1, 0, {{"Td", "Nm", of("Td_z1_Nm")}, {"p_1", "bar", of("p_1_bar")}});
+  table.rows[7][1] = not_computed();
+  const MappingGuess found = guess(table);
+  EXPECT_THAT(found.unrecognised, ElementsAre("Td"));
+  EXPECT_THAT(found.ignored, ElementsAre(Pair("Td", "not recognised: has empty fields: 1 of 360")));
+}
+
 // The same pump a million times smaller: sizes mean nothing.
 TEST(MappingRecords, AWrongSignIsComparedInASmallPumpToo) {
   constexpr double kSize = 1e-6;
@@ -1114,9 +1213,10 @@ TEST(MappingRecords, AColumnTwiceAndARecordOfAnotherPump) {
                                            {"copy", "Nm", of("Td_z1_Nm")},
                                            {"empty", "Nm", [](double) { return not_computed(); }},
                                            {"along", "Nm", [](double t) { return t; }}}));
-  EXPECT_THAT(found.ignored, ElementsAre(Pair("empty", "has empty fields"),
+  EXPECT_THAT(found.ignored, ElementsAre(Pair("empty", "has empty fields: 360 of 360"),
                                          Pair("along", "is proportional to the angle"),
                                          Pair("copy", "like another column, looks like Td_z1_Nm")));
+  EXPECT_THAT(found.unrecognised, IsEmpty());
   EXPECT_EQ(found.curve.angle.offset_deg, 0);
   EXPECT_THROW(guess(record(1, 0, {{"a", "", [](double t) { return std::cos(radians(61 * t)); }}})),
                InputError);

@@ -28,6 +28,9 @@ constexpr double kPoorFrame = 0.02;
 // of the record or of the model, and must be seen.
 constexpr double kSameFrame = 5;  // deg
 
+// Of two frames the one whose score is smaller by less than this fits as well.
+constexpr double kBetter = 1e-6;
+
 struct ModelVector {
   Channel channel;  // of its components, without an axis
   double peak = 0;
@@ -51,7 +54,8 @@ struct FrameChoice {
 };
 
 struct Assignment {
-  double cost = 0;
+  double cost = 0;   // sum over groups and columns
+  double score = 0;  // of the groups, by which frames are chosen: the smaller the better
   FrameChoice frame;
   std::vector<Match> groups, columns;
   int numbered = 0;  // pistons that have the number which their names say
@@ -72,8 +76,8 @@ class Guesser {
     for (const AngleMap& choice : choices) {
       take_turn(choice);
       for (const Found& found : phases()) {
-        if (!best || found.cost < least) {
-          least = found.cost;
+        if (!best || found.score < least) {
+          least = found.score;
           best = found;
           best->angle = choice;
         }
@@ -89,7 +93,9 @@ class Guesser {
  private:
   struct Found {
     AngleMap angle;
-    double sign = 1, phase = 0, cost = 0;
+    double sign = 1, phase = 0;
+    double cost = 0;   // mean over the features
+    double score = 0;  // by which phases are chosen: the smaller the better
   };
 
   void read_model(const ResultTable& model) {
@@ -136,14 +142,22 @@ class Guesser {
     time_ = map.is_time;
     splines_.assign(table_.header.size(), std::nullopt);
     ignored_.clear();
+    undecided_.clear();
     constant_.assign(table_.header.size(), false);
     std::vector<bool> has_curve(table_.header.size(), false);
     for (std::size_t c = 0; c < table_.header.size(); ++c) {
       if (c == angle) continue;
       std::vector<double> y;
       for (const auto row : turn.rows) y.push_back(table_.rows[row][c]);
-      if (!std::all_of(y.begin(), y.end(), is_computed)) {
-        ignored_.emplace_back(table_.header[c], "has empty fields");
+      if (const auto empty =
+              std::count_if(y.begin(), y.end(), [](double value) { return !is_computed(value); });
+          empty > 0) {
+        // A column that is mostly there is one that somebody wants compared.
+        const bool wanted = 2 * static_cast<std::size_t>(empty) < y.size();
+        ignored_.emplace_back(table_.header[c],
+                              fmt::format("{}has empty fields: {} of {}",
+                                          wanted ? "not recognised: " : "", empty, y.size()));
+        if (wanted) undecided_.push_back(table_.header[c]);
         continue;
       }
       if (runs_along(table_, c)) {
@@ -225,6 +239,11 @@ class Guesser {
                         sampled(feature.columns[1], sign, phase, count),
                         sampled(feature.columns[2], sign, phase, count)});
     };
+    // By logarithms, so that the curves which fit decide and not the one that lags.
+    const auto of_feature = [](double square) {
+      constexpr double kAsGoodAsExact = 1e-4;
+      return std::log(kAsGoodAsExact + std::max(0.0, 1 - square));
+    };
     std::vector<Found> result;
     for (const double sign : {1.0, -1.0}) {
       // Cost and best target of each feature by phase.
@@ -248,7 +267,8 @@ class Guesser {
             }
           }
         }
-        for (std::size_t shift = 0; shift < kCoarse; ++shift) cost[shift] += 1 - best[shift];
+        for (std::size_t shift = 0; shift < kCoarse; ++shift)
+          cost[shift] += of_feature(best[shift]);
       }
       std::vector<std::size_t> order(kCoarse);
       std::iota(order.begin(), order.end(), std::size_t{0});
@@ -266,20 +286,22 @@ class Guesser {
             }))
           continue;
         tried.push_back(start);
-        const auto at = [&](double phase) {
+        const auto at = [&](double phase, const auto& of_square) {
           double sum = 0;
           for (std::size_t f = 0; f < features.size(); ++f) {
             const double r = dot(normalised(series(features[f], sign, phase, n_)),
                                  targets[chosen[shift][f]].fine);
-            sum += 1 - r * r;
+            sum += of_square(r * r);
           }
-          return sum;
+          return sum / static_cast<double>(features.size());
         };
         Found found;
         found.sign = sign;
         found.phase =
-            start + numerics::smallest_at([&](double moved) { return at(start + moved); }, -3, 3);
-        found.cost = at(found.phase) / static_cast<double>(features.size());
+            start + numerics::smallest_at(
+                        [&](double moved) { return at(start + moved, of_feature); }, -3, 3);
+        found.cost = at(found.phase, [](double square) { return 1 - square; });
+        found.score = at(found.phase, of_feature);
         if (found.cost < kNoChannel) result.push_back(found);
       }
       if (time_) break;  // the sign of the speed says the direction
@@ -351,9 +373,13 @@ class Guesser {
     return m;
   }
 
-  // A turned frame and a reversal both, shown by a single vector, would also be the error of one
-  // sign.
-  bool may_reverse(const FrameChoice& frame) const { return groups_.size() > 1 || frame.plain(); }
+  // A turned frame and a reversal both, shown by a single vector with three components, would also
+  // be the error of one sign.
+  bool may_reverse(const FrameChoice& frame) const {
+    const auto whole = std::count_if(groups_.begin(), groups_.end(),
+                                     [](const Group& group) { return group.count() == 3; });
+    return whole > 1 || frame.plain();
+  }
 
   // The best vector for each group, in one frame.
   Assignment in_frame(const Vectors& at, const FrameChoice& frame) const {
@@ -375,7 +401,39 @@ class Guesser {
         [&](std::size_t g, int wanted) { return match(at, g, a.groups[g].index, frame, wanted); },
         [&](const Channel&, int fitting) { return may_reverse(frame) ? fitting : 1; });
     for (const Match& m : a.groups) a.cost += std::min(m.cost, 1.0);
+    a.score = score_of(at, a);
     return a;
+  }
+
+  // By logarithms, so that the vectors which fit decide and not the one that does not. A vector may
+  // fit with its components exchanged or of other signs: that is one error of the file, and needs a
+  // smaller one than a frame that turns all of them for its sake.
+  double score_of(const Vectors& at, const Assignment& a) const {
+    constexpr double kRoundOff = 1e-8;
+    const double fault = std::log(4), turned = std::log(1.1);
+    double score = a.frame.plain() ? 0 : turned;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      double mixed = 1;
+      for (const std::size_t v : at.allowed[g])
+        mixed = std::min(mixed, mixed_cost(at, g, v, a.frame));
+      score += std::min(std::log(kRoundOff + std::min(a.groups[g].cost, 1.0)),
+                        fault + std::log(kRoundOff + mixed));
+    }
+    return score;
+  }
+
+  // How well vector v in a frame is group g with its components in another order and of any signs.
+  double mixed_cost(const Vectors& at, std::size_t g, std::size_t v,
+                    const FrameChoice& frame) const {
+    const Products& p = at.products[g][v];
+    const Channel& ours = vectors_[v].channel;
+    const double own = p.ours_ours[0][0] + p.ours_ours[1][1] + p.ours_ours[2][2];
+    if (own <= 0) return 1;
+    const std::string unit =
+        unit_for(std::sqrt(at.squares[g] / own), ours.unit, ours.unit_in_si, groups_[g].unit);
+    if (unit.empty()) return 1;
+    return cost_of_mixed(p, to_own(frame, vectors_[v]),
+                         ours.unit_in_si / compare::find_unit(unit)->si, at.theirs[g]);
   }
 
   Assignment assign(double sign, double phase) const {
@@ -383,7 +441,7 @@ class Guesser {
     Assignment best = in_frame(at, {});
     // Of frames that fit as well the plainest, which come first.
     const auto keep = [&](Assignment a) {
-      if (a.cost < best.cost * (1 - 1e-6) - 1e-9) best = std::move(a);
+      if (a.score < best.score - kBetter) best = std::move(a);
     };
     for (const char* base : {"S1", "S2"}) keep(in_frame(at, {base, compare::kNoTurn, "", {}}));
     for (const char* base : {"", "S1", "S2"})
@@ -429,7 +487,7 @@ class Guesser {
         }
         // Of two that fit as well the one without a reversal, which comes first.
         Assignment a = in_frame(at, frame);
-        if (a.cost < best.cost * (1 - 1e-6) - 1e-9) best = std::move(a);
+        if (a.score < best.score - kBetter) best = std::move(a);
       }
     // All of them together. A vector weighs the less the more it differs: one that is wrong does
     // not turn the frame of the others.
@@ -446,7 +504,7 @@ class Guesser {
       }
       frame.axes = nearest_rotation(products, weights);
       last = in_frame(at, frame);
-      if (last.cost < best.cost) best = last;
+      if (last.score < best.score) best = last;
     }
     for (const char* base : {"S1", "S2"})
       if (angle_from_right_angles(carried(best.frame.axes, frames_.at("S1"), frames_.at(base))) <
@@ -571,6 +629,22 @@ class Guesser {
     }
   }
 
+  // The channel that a column looks like by itself, whatever its factor and sign; "": none.
+  std::string channel_like(std::size_t column, double sign, double phase) const {
+    const Series theirs = normalised(sampled(column, sign, phase, n_));
+    const auto* unit = compare::find_unit(known_unit(table_.units[column]));
+    double most = kMinCorrelation;
+    std::string name;
+    for (const ModelChannel& one : channels_) {
+      if (unit != nullptr && unit->family != one.channel.unit) continue;
+      const double correlation = std::abs(dot(theirs, normalised(one.values)));
+      if (correlation < most) continue;
+      most = correlation;
+      name = one.channel.name;
+    }
+    return name;
+  }
+
   // Columns that belong to no vector: each one channel.
   void assign_columns(Assignment& a, double sign, double phase) const {
     std::map<std::string, int> signs;  // of quantities that vectors have
@@ -634,6 +708,7 @@ class Guesser {
   std::vector<Group> groups_;
   std::vector<std::size_t> singles_;
   std::vector<std::pair<std::string, std::string>> ignored_;
+  std::vector<std::string> undecided_;  // of these, what must be decided
 };
 
 // What is compared in the end, per group or column: theirs against ours, mapped to theirs.
@@ -671,6 +746,7 @@ MappingGuess Guesser::finish(const Found& found) {
 
   MappingGuess guess;
   guess.ignored = ignored_;
+  guess.unrecognised = undecided_;
   compare::CurveDescription& curve = guess.curve;
   curve.file = table_.file;
   curve.sheet = table_.sheet;
@@ -697,10 +773,21 @@ MappingGuess Guesser::finish(const Found& found) {
     const bool fits =
         ours != nullptr && (m.cost < kNoChannel || m.signs_differ || (by_name && m.cost < 2.5));
     if (fits && taken.insert(ours->name).second) return true;
+    // A vector that is none of ours though some of its components are: something is wrong with it.
+    std::string parts;
     for (const std::size_t column : columns)
-      guess.ignored.emplace_back(table_.header[column],
-                                 fits ? "like another column, looks like " + ours->name
-                                      : "no channel has a similar curve");
+      if (const std::string name = fits ? "" : channel_like(column, found.sign, phase);
+          !name.empty())
+        parts += (parts.empty() ? "" : ", ") + table_.header[column] + " looks like " + name;
+    for (const std::size_t column : columns) {
+      guess.ignored.emplace_back(
+          table_.header[column],
+          fits ? "like another column, looks like " + ours->name
+          : parts.empty()
+              ? "no channel has a similar curve"
+              : "not recognised: " + parts + ", but together they are no vector of the pump");
+      if (!parts.empty()) guess.unrecognised.push_back(table_.header[column]);
+    }
     return false;
   };
 
@@ -793,6 +880,11 @@ MappingGuess Guesser::finish(const Found& found) {
       phase + numerics::smallest_at([&](double moved) { return cost(phase + moved); }, -0.5, 0.5)};
   roundest([&](const std::vector<double>& at) { return cost(at.front()); }, round_phase);
   phase = round_phase.front();
+  // A small shift that leaves curves apart is as likely an error of the model: of its port timing.
+  constexpr double kSmallShift = 10;         // deg
+  const double decisive = 2 * std::log(10);  // of the logarithm of a mean square difference
+  if (std::abs(phase) < kSmallShift && cost(phase) > cost(0) - decisive)
+    std::swap(phase, guess.shift_not_taken_deg);
   for (const Pairing& pairing : pairings) {
     MappingProposal proposal{pairing.theirs, pairing.ours, pairing.sign, pairing.unit, 0, 0, ""};
     double product = 0, theirs_square = 0, ours_square = 0, without_signs = 0;

@@ -124,6 +124,9 @@ void add_component(const Products& p, const Axes& axes, std::size_t j, double& p
 // somewhere, and must be compared, not left out.
 double cost_without_signs(const Products& p, const Axes& axes, double factor,
                           const std::array<Series, 3>& theirs);
+// Likewise with the components in the order that fits best: two of them may have been exchanged.
+double cost_of_mixed(const Products& p, const Axes& axes, double factor,
+                     const std::array<Series, 3>& theirs);
 
 // ---- Frames and numbers
 

@@ -190,6 +190,12 @@ std::string proposal_text(const MappingGuess& guess) {
   for (const auto& line : compare::assumptions_of(guess.curve))
     if (line.find("times") == std::string::npos && line.find("stand for no") == std::string::npos)
       text += line + "\n";
+  if (guess.shift_not_taken_deg != 0)
+    text += fmt::format(
+        "not shifted: {0:.3g} deg would fit better, and still not well, as a wrong port timing "
+        "would "
+        "too; if the record's angle begins elsewhere, set offset_deg = {0:.3g} in the mapping\n",
+        guess.shift_not_taken_deg);
   return text;
 }
 

@@ -36,6 +36,9 @@ struct MappingGuess {
   int samples = 0;      ///< per turn of a run that has the record's angles; 0 = none has
   std::string euler;    ///< of a frame at Euler angles: their sequence
   std::array<double, 3> euler_deg{};
+  /// A small phase shift that fits better but not well, as a wrong port timing would too: not
+  /// taken.
+  double shift_not_taken_deg = 0;
 
   std::size_t recognised() const;  ///< columns that stand for a result
 };
@@ -48,7 +51,8 @@ struct MappingGuess {
 /// - per quantity: one sign (the force on the other body); a turned frame and a sign together only
 ///   where two vectors show it;
 /// - per column or vector: channel and unit, of a list of units.
-/// The phase shift is the roundest angle that fits as well as the best one. No factor, scale or
+/// The phase shift is the roundest angle that fits as well as the best one; one below 10 deg is
+/// taken only where without it curves differ ten times as much. No factor, scale or
 /// offset is fitted, and no sign of a single component: what is wrong in a model stays wrong.
 /// @param model  one turn at equal steps
 /// @param frames  of the case
