@@ -34,6 +34,8 @@ constexpr double kLargestGap = 30;
 constexpr double kExplained = 0.01;
 // ...or of a shifted curve this share: the spline between its points is not exact.
 constexpr double kExplainedByShift = 0.25;
+// Of shifts that leave as much but for this share the smallest is meant.
+constexpr double kAsGood = 0.01;
 // Hints look at no more angles than this.
 constexpr std::size_t kHintRows = 90;
 
@@ -287,7 +289,16 @@ class Hints {
       square += theirs[i] * theirs[i];
     }
     const double factor = square > 0 ? product / square : 0;
-    if (std::abs(factor - 1) > kExplained && rms(theirs, ours, factor) <= enough)
+    double offset = 0;
+    for (std::size_t i = 0; i < ours.size(); ++i)
+      offset += (ours[i] - theirs[i]) / static_cast<double>(ours.size());
+    std::vector<double> moved = theirs;
+    for (double& value : moved) value += offset;
+    const double with_factor = rms(theirs, ours, factor), with_offset = rms(moved, ours, 1);
+    if (with_offset <= enough && with_offset < with_factor)
+      return fmt::format("the result is the reference {} {:.6g} {} at every angle",
+                         offset < 0 ? "less" : "plus", std::abs(offset), channel.channel.unit);
+    if (std::abs(factor - 1) > kExplained && with_factor <= enough)
       return std::abs(factor + 1) < kExplained
                  ? std::string("the reference has the opposite sign")
                  : fmt::format("the result is {:.7g} times the reference", factor);
@@ -315,18 +326,31 @@ class Hints {
   }
   double best_shift(std::size_t column, const std::vector<double>& ours) const {
     if (reference_.rows() < 3) return 0;
-    double best = 0, least = shifted_rms(column, ours, 0);
-    const auto search = [&](double from, double to, double step) {
-      for (double shift = from; shift <= to; shift += step)
-        if (const double value = shifted_rms(column, ours, shift); value < least) {
-          least = value;
-          best = shift;
-        }
+    struct Shift {
+      double deg, rms;
     };
-    search(-180, 180, 1);
-    search(best - 1, best + 1, 0.1);
-    search(best - 0.1, best + 0.1, 0.01);
-    return best;
+    const auto at = [&](double deg) { return Shift{deg, shifted_rms(column, ours, deg)}; };
+    const auto search = [&](Shift best, double reach, double step) {
+      const double around = best.deg;
+      for (double deg = around - reach; deg <= around + reach; deg += step)
+        if (const Shift there = at(deg); there.rms < best.rms) best = there;
+      return best;
+    };
+    // A curve that repeats fits at several shifts: of those that are as good the smallest.
+    std::vector<Shift> degrees;
+    for (int deg = -181; deg <= 181; ++deg) degrees.push_back(at(deg));
+    std::vector<Shift> fits;
+    for (std::size_t i = 1; i + 1 < degrees.size(); ++i)
+      if (degrees[i].rms <= degrees[i - 1].rms && degrees[i].rms <= degrees[i + 1].rms)
+        fits.push_back(search(search(degrees[i], 1, 0.1), 0.1, 0.01));
+    const Shift none = at(0);
+    Shift best = none;
+    for (const Shift& fit : fits)
+      if (fit.rms < best.rms) best = fit;
+    const double as_good = best.rms + kAsGood * none.rms;
+    for (const Shift& fit : fits)
+      if (fit.rms <= as_good && std::abs(fit.deg) < std::abs(best.deg)) best.deg = fit.deg;
+    return best.deg;
   }
   const PeriodicSpline& spline(std::size_t column) const {
     auto it = splines_.find(column);

@@ -169,6 +169,29 @@ class ExplanationTest(unittest.TestCase):
             return header, [[row[0], *(v + sigma[c] * draw.gauss(0, 1) for c, v in enumerate(row[1:], 1))] for row in rows]
         return make
 
+    def test_what_the_other_program_leaves_out_is_named(self):
+        """Written before it was run: friction, weight or mass of the pistons left out as a whole are named as what explains."""
+        friction = ("friction.piston_coulomb_N=0", "friction.piston_viscous_N_s_per_m=0", "friction.block_viscous_Nm_per_rpm=0",
+                    "friction.shaft_viscous_Nm_per_rpm=0", "friction.shaft_torque_factor=1")
+        wholes = {"friction": friction, "of_pistons": friction[:2], "weight": ("operation.gravity_m_per_s2=0",),
+                  "mass": ("piston.mass_kg=0",)}
+        for name, changes in wholes.items():
+            self.write(name, self.curves(*changes))
+        found = self.explanations()
+        for name, changes in wholes.items():
+            with self.subTest(name):
+                sentence, rows = found[name]
+                self.assertEqual({row["parameter"] for row in rows if row["explains"] == "yes"},
+                                 {change.split("=")[0] for change in changes} - self.absent())
+                self.assertIn("100 % of the difference", sentence)
+                self.assertNotIn("that is not all", sentence)
+
+    def absent(self):
+        """Of the names above those whose value is 0 in the case: they cannot be left out of it."""
+        import tomllib
+        friction = tomllib.loads(self.case.read_text())["friction"]
+        return {f"friction.{name}" for name in ("piston_coulomb_N", "piston_viscous_N_s_per_m") if friction.get(name, 0) == 0}
+
     def test_little_noise_hides_nothing(self):
         truth = self.draw(FEW, SEED + 1, self.noisy(0.1))
         found = self.explanations()

@@ -307,6 +307,24 @@ TEST_F(ReferenceFolder, HintsNameWhatHappened) {
   EXPECT_THAT(hint(j, "X_x_N"), HasSubstr("shifted by about +0.37 deg"));
   j = judged([](double a) -> Row { return {a, x_of(a) + wave(a, 7), y_of(a), t_of(a)}; });
   EXPECT_EQ(hint(j, "X_x_N"), "");
+  j = judged([](double a) -> Row { return {a, x_of(a), y_of(a), t_of(a) + 12}; });
+  EXPECT_THAT(hint(j, "T_Nm"), HasSubstr("the reference less 12 Nm at every angle"));
+  j = judged([](double a) -> Row { return {a, x_of(a) - 0.5, y_of(a), t_of(a)}; });
+  EXPECT_THAT(hint(j, "X_x_N"), HasSubstr("the reference plus 0.5 N at every angle"));
+  // A curve that repeats every 72 deg is moved by 5 deg as well as by 149 the other way.
+  const auto repeats = [](double a) { return 100 + 5 * wave(a, 5) + 2 * wave(a + 3, 10); };
+  ResultTable of_ripple = result(72);
+  for (std::size_t row = 0; row < of_ripple.rows(); ++row)
+    of_ripple.values[row * 3 + 2] = repeats(of_ripple.theta_deg[row]);
+  for (const auto& [moved, text] :
+       {std::pair{5.0, "+5.00"}, std::pair{-5.0, "-5.00"}, std::pair{3.2, "+3.20"}}) {
+    write_curve(72, [&, by = moved](double a) -> Row {
+      return {a, x_of(a), y_of(a), repeats(a + by)};
+    });
+    const auto d = description(72);
+    EXPECT_THAT(hint(judge(d, {curve(d)}, of_ripple, {}), "T_Nm"),
+                HasSubstr(std::string("shifted by about ") + text + " deg"));
+  }
   // A rig's noise, within what is allowed, hides no exchange of columns.
   write_curve(72, [](double a) -> Row {
     return {a, y_of(a) + 3 * wave(a, 7), x_of(a) - 3 * wave(a, 9), t_of(a)};

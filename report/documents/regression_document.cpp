@@ -122,7 +122,8 @@ std::optional<report::Section> explanation_section(const std::vector<Outcome>& o
   section.title = "What would explain the difference";
   section.text =
       "Parameters of the case, each changed alone or two together, until the analytic results are "
-      "nearest to the reference; computed again with them. Share: of the sum of squared "
+      "nearest to the reference, or left out as a whole (friction, weight, mass of the pistons); "
+      "computed again with them. Share: of the sum of squared "
       "differences, each over the peak of its reaction.";
   section.table.columns = {
       "case",  "parameter",    "in the case", "nearest",  "unit",
@@ -133,7 +134,7 @@ std::optional<report::Section> explanation_section(const std::vector<Outcome>& o
     any = true;
     const Explanation& found = *outcome.explanation;
     section.facts.emplace_back(outcome.name, found.text());
-    for (const auto* list : {&found.singles, &found.pairs})
+    for (const auto* list : {&found.left_out, &found.singles, &found.pairs})
       for (const ExplainingChange& change : *list)
         for (const auto& p : change.parameters)
           section.table.rows.push_back({outcome.name, p.name, p.from, p.to, p.unit, change.share,

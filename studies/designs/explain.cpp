@@ -32,7 +32,8 @@ constexpr double kDone = 1e-12;  // of the difference, or by which a step still 
 struct Column {
   std::string name;
   std::size_t in_layout;
-  double weight;  // 1 / peak
+  double weight;   // 1 / peak
+  double allowed;  // over peak
 };
 
 class Search {
@@ -63,6 +64,8 @@ class Search {
       return found;
     }
     const Progress progress = progress_of_("what would explain the difference");
+    found.left_out = leave_out();
+    if (found.cause() != nullptr) return found;
     found.singles = refine(ranked_singles(), progress);
     if (found.cause() == nullptr) found.pairs = refine(ranked_pairs(), progress);
     return found;
@@ -87,8 +90,8 @@ class Search {
             reference.find(c.channel.name) == reference.columns())
           continue;
         columns_.push_back({c.channel.name,
-                            static_cast<std::size_t>(place - layout.channels().begin()),
-                            1 / c.peak});
+                            static_cast<std::size_t>(place - layout.channels().begin()), 1 / c.peak,
+                            c.allowed / c.peak});
         si_.push_back(place->unit_in_si);
       }
     if (columns_.empty()) throw InputError("no channel of the analytic model was compared.");
@@ -278,12 +281,64 @@ class Search {
         if (v != choice[i] && std::abs(correlation(v, choice[i])) >= Explanation::kLookSame)
           change.parameters.back().look_same.push_back(variables_[v].name());
     }
+    measure(change, now);
+    return change;
+  }
+
+  // What another program may not model at all, where this case does.
+  std::vector<ExplainingChange> leave_out() const {
+    struct Off {
+      const char* name;
+      double value;  // in the file's unit
+    };
+    const std::vector<std::vector<Off>> wholes = {
+        {{"friction.piston_coulomb_N", 0}, {"friction.piston_viscous_N_s_per_m", 0}},
+        {{"friction.piston_coulomb_N", 0},
+         {"friction.piston_viscous_N_s_per_m", 0},
+         {"friction.block_viscous_Nm_per_rpm", 0},
+         {"friction.shaft_viscous_Nm_per_rpm", 0},
+         {"friction.shaft_torque_factor", 1}},
+        {{"operation.gravity_m_per_s2", 0}},
+        {{"piston.mass_kg", 0}}};
+    std::vector<ExplainingChange> changes;
+    for (const std::vector<Off>& whole : wholes) {
+      ExplainingChange change;
+      std::vector<Variable> variables;
+      std::vector<double> values;
+      for (const Off& off : whole) {
+        std::optional<Variable> variable;
+        // One that does nothing in this case cannot be left out of it.
+        if (!study::reason_of([&] { variable.emplace(off.name, base_); }).empty()) continue;
+        const double here = variable->value(base_);
+        if (here == off.value) continue;
+        change.parameters.push_back({off.name, variable->unit(), here, off.value, {}});
+        variables.push_back(*variable);
+        values.push_back(off.value);
+      }
+      if (variables.empty()) continue;
+      const auto there =
+          results(Family(base_, variables),
+                  Eigen::Map<const Eigen::VectorXd>(values.data(), index(values.size())));
+      if (!there) continue;
+      measure(change, *there);
+      if (change.share >= Explanation::kMentioned) changes.push_back(std::move(change));
+    }
+    std::stable_sort(changes.begin(), changes.end(),
+                     [](const auto& a, const auto& b) { return a.share > b.share; });
+    return changes;
+  }
+
+  // How much of the difference a change takes away, and what is left.
+  void measure(ExplainingChange& change, const Eigen::VectorXd& now) const {
     const Eigen::VectorXd rest = wanted_ - now;
     change.share = 1 - rest.squaredNorm() / difference_;
     Eigen::Index worst = 0;
     change.rest_over_peak = rest.cwiseAbs().maxCoeff(&worst);
     change.rest_channel = columns_[static_cast<std::size_t>(worst) % columns_.size()].name;
-    return change;
+    for (Eigen::Index at = 0; at < rest.size(); ++at) {
+      const double allowed = columns_[static_cast<std::size_t>(at) % columns_.size()].allowed;
+      change.rest_over_allowed = std::max(change.rest_over_allowed, std::abs(rest[at]) / allowed);
+    }
   }
 
   static bool is_small(const ExplainingChange& change) {

@@ -24,6 +24,7 @@ double percent(double share) { return std::floor(1000 * share) / 10; }
 }  // namespace
 
 const ExplainingChange* Explanation::cause() const {
+  if (!left_out.empty() && left_out.front().share >= kPair) return &left_out.front();
   if (!singles.empty() && singles.front().share >= kSingle) return &singles.front();
   if (!pairs.empty() && pairs.front().share >= kPair) return &pairs.front();
   return nullptr;
@@ -35,10 +36,13 @@ std::string Explanation::text() const {
   if (found == nullptr) {
     std::string text =
         fmt::format("No parameter of the case explains the difference ({} tried", tried);
-    if (!singles.empty())
+    const auto worth_naming = [](const std::vector<ExplainingChange>& changes) {
+      return !changes.empty() && changes.front().share >= kWorthNaming;
+    };
+    if (worth_naming(singles))
       text += fmt::format("; the best, {}, explains {:g} % of it", change_text(singles.front()),
                           percent(singles.front().share));
-    if (!pairs.empty())
+    if (worth_naming(pairs))
       text += fmt::format("; the best pair, {}, {:g} %", change_text(pairs.front()),
                           percent(pairs.front().share));
     return text + ").";
@@ -47,6 +51,9 @@ std::string Explanation::text() const {
       "{} {} {:g} % of the difference; the rest is at most {:.2g} of peak ({})",
       change_text(*found), found->parameters.size() == 1 ? "explains" : "together explain",
       percent(found->share), found->rest_over_peak, found->rest_channel);
+  if (found->rest_over_allowed > 1)
+    text +=
+        fmt::format(", {:.2g} times what is allowed: that is not all", found->rest_over_allowed);
   std::vector<std::string> same, others;
   for (const auto& p : found->parameters)
     same.insert(same.end(), p.look_same.begin(), p.look_same.end());
