@@ -139,7 +139,27 @@ TEST_F(ConnectTest, RefusesWhatIsNotThereOrNotClear) {
   // Of names that both sides have.
   add(variable("drive_torque", "input", "N.m"));
   add(variable("Td_z1_Nm", "output", "N.m"));
-  EXPECT_THAT(refused({"drive_torque=Td_z1_Nm"}), HasSubstr("is ambiguous"));
+  EXPECT_THAT(refused({"drive_torque=Td_z1_Nm"}),
+              AllOf(HasSubstr("is ambiguous"), HasSubstr("pump:drive_torque=Td_z1_Nm")));
+}
+
+TEST_F(ConnectTest, WhoseInputItIsMayBeSaid) {
+  add(variable("drive_torque", "input", "N.m"));
+  add(variable("Td_z1_Nm", "output", "N.m"));
+  EXPECT_THAT(made(connect(unit_, pump_, {"pump:drive_torque=Td_z1_Nm"}, "u.fmu")),
+              ElementsAre("drive_torque<Td_z1_Nm"));
+  add(variable("drive_speed", "output", "rad/s"));
+  EXPECT_THAT(made(connect(unit_, pump_, {"fmu:drive_torque=Td_z1_Nm"}, "u.fmu")),
+              ElementsAre("drive_torque<Td_z1_Nm", "drive_speed<drive_speed"));
+  EXPECT_THAT(refused({"fmu:drive_torque=drive_speed"}), HasSubstr("no column \"drive_speed\""));
+  EXPECT_THAT(refused({"pump:drive_torque=shaft_rpm"}), HasSubstr("no output \"shaft_rpm\""));
+}
+
+TEST_F(ConnectTest, SaysWhatWasMeant) {
+  add(variable("motor_torque", "output", "N.m"));
+  add(variable("n", "input", "rpm"));
+  EXPECT_THAT(refused({"drive_torque=motor_torqe"}), HasSubstr("did you mean \"motor_torque\"?"));
+  EXPECT_THAT(refused({"n=shaft_rp"}), HasSubstr("did you mean \"shaft_rpm\"?"));
 }
 
 TEST_F(ConnectTest, RefusesTwoThatTurnTheShaftOrHalfAMotion) {

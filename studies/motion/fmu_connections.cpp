@@ -8,6 +8,7 @@
 #include "bentaxis/hydraulics/oil_in_time.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/unit_of_measure.h"
+#include "bentaxis/pump/words.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/results/motion.h"
 #include "bentaxis/results/trajectory.h"
@@ -28,6 +29,10 @@ std::string first_of(const std::vector<std::string>& names) {
     text += (i == 0 ? "" : ", ") + names[i];
   return text + (names.size() > kMax ? ", .." : "");
 }
+
+// Before the input of a wanted connection: whose it is.
+constexpr const char* kOfPump = "pump:";
+constexpr const char* kOfUnit = "fmu:";
 
 const PumpInput* input_named(std::string_view name) {
   for (const PumpInput& input : pump_inputs())
@@ -84,15 +89,25 @@ class Connector {
     const auto sign = text.find('=');
     if (sign == std::string::npos || sign == 0 || sign + 1 == text.size())
       throw InputError(option + ": must be A=B: A gets the value of B");
-    const std::string to = text.substr(0, sign), from = text.substr(sign + 1);
-    const fmu::UnitVariable* output = variable(from, "output");
-    const fmu::UnitVariable* input = variable(to, "input");
-    const bool to_pump = input_named(to) != nullptr && output != nullptr;
+    std::string to = text.substr(0, sign);
+    const std::string from = text.substr(sign + 1);
+    // Whose input it is may be said before it.
+    const auto said = [&to](std::string_view whose) {
+      const bool is = to.starts_with(whose);
+      if (is) to.erase(0, whose.size());
+      return is;
+    };
+    const bool of_pump = said(kOfPump), of_unit = !of_pump && said(kOfUnit);
+    const fmu::UnitVariable* output = of_unit ? nullptr : variable(from, "output");
+    const fmu::UnitVariable* input = of_pump ? nullptr : variable(to, "input");
+    const bool to_pump = !of_unit && input_named(to) != nullptr && output != nullptr;
     const bool to_unit = input != nullptr && has_column(from);
     if (to_pump && to_unit)
       throw InputError(option +
-                       ": is ambiguous: both the pump and the FMU have such an input and output");
-    if (!to_pump && !to_unit) refuse_unknown(option, to, from);
+                       ": is ambiguous: both the pump and the FMU have such an input and output; "
+                       "write " +
+                       kOfPump + text + " or " + kOfUnit + text + ", whose input it is");
+    if (!to_pump && !to_unit) refuse_unknown(option, to, !of_unit && input == nullptr, input, from);
     if (is_made(to_pump, to)) throw InputError(option + ": \"" + to + "\" is connected already");
     if (to_pump) {
       if (const std::string why = why_not_taken(to); !why.empty())
@@ -103,17 +118,21 @@ class Connector {
     }
   }
 
-  [[noreturn]] void refuse_unknown(const std::string& option, const std::string& to,
+  // @param of_unit  the FMU's input of that name, where it may be meant
+  [[noreturn]] void refuse_unknown(const std::string& option, const std::string& to, bool of_pump,
+                                   const fmu::UnitVariable* of_unit,
                                    const std::string& from) const {
+    const auto meant_of = [&](const std::vector<std::string>& known, const char* more) {
+      return suggestion(from, {known.begin(), known.end()}, more);
+    };
+    if (of_pump && input_named(to) != nullptr)
+      throw InputError(fmt::format("{}: the FMU has no output \"{}\"{}", option, from,
+                                   meant_of(names("output"), "in modelDescription.xml")));
+    if (of_unit != nullptr)
+      throw InputError(fmt::format("{}: the pump has no column \"{}\"{}", option, from,
+                                   meant_of(pump_.columns, "in its tables")));
     std::vector<std::string> inputs;
     for (const PumpInput& input : pump_inputs()) inputs.emplace_back(input.name);
-    if (input_named(to) != nullptr && variable(to, "input") == nullptr)
-      throw InputError(fmt::format("{}: the FMU has no output \"{}\": it has {}", option, from,
-                                   first_of(names("output"))));
-    if (variable(to, "input") != nullptr)
-      throw InputError(
-          fmt::format("{}: the pump has no column \"{}\": it has those of its tables ({})", option,
-                      from, first_of(pump_.columns)));
     throw InputError(
         fmt::format("{}: neither the pump nor the FMU has an input \"{}\": those of the pump are "
                     "{}; those of the FMU: {}",

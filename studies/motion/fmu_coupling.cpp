@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <unordered_set>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/time_signal.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/pump/words.h"
 #include "bentaxis/results/trajectory.h"
 #include "fmu_connections.h"
 
@@ -184,11 +186,13 @@ void UnitCoupling::find_parameters(const std::vector<std::string>& wanted) {
     if (!value) throw InputError(option + ": must be NAME=VALUE, a number");
     const fmu::UnitVariable* v = unit_->description().find(text.substr(0, sign));
     if (v == nullptr || v->causality != "parameter") {
-      std::string names;
+      std::set<std::string> names;
       for (const auto& other : unit_->description().variables)
-        if (other.causality == "parameter") names += (names.empty() ? "" : ", ") + other.name;
-      throw InputError(option + ": the FMU has no such parameter: it has " +
-                       (names.empty() ? "none" : names));
+        if (other.causality == "parameter") names.insert(other.name);
+      throw InputError(option + ": the FMU has no such parameter" +
+                       (names.empty()
+                            ? ": it has none"
+                            : suggestion(text.substr(0, sign), names, "in modelDescription.xml")));
     }
     parameters_.emplace_back(*v, *value);
   }
