@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "bentaxis/analytic/model.h"
 #include "bentaxis/numerics/minimum.h"
 #include "bentaxis/pump/units.h"
 
@@ -92,9 +93,36 @@ Extremes extremes_of(const Function& value) {
 
 }  // namespace
 
+namespace {
+
+// Tilts of pistons that turn the block, which lags by its free play: each piston's own.
+void tilt_by_free_play(const PumpParameters& pump, DerivedQuantities& result) {
+  const Geometry& g = pump.geometry;
+  const Model model(pump, {});
+  double nearest = g.piston_length, farthest = 0;
+  for (int k = 0; k < g.pistons; ++k) {
+    const double phase = 2 * kPi * k / g.pistons;
+    const Extremes tilt = extremes_of([&](double theta) {
+      const FreePlay play = model.free_play(theta);
+      return joint_distance(g, theta - phase, theta - (play.exists ? play.high : 0) - phase);
+    });
+    nearest = std::min(nearest, tilt.low);
+    farthest = std::max(farthest, tilt.high);
+  }
+  result.smallest_tilt = std::asin(std::min(1.0, nearest / g.piston_length));
+  result.largest_tilt = std::asin(std::min(1.0, farthest / g.piston_length));
+}
+
+}  // namespace
+
 DerivedQuantities derived_quantities(const PumpParameters& pump) {
   const Geometry& g = pump.geometry;
-  if (!pump.transfer.is_uneven_joint()) return derived_quantities(g);
+  if (!pump.transfer.is_uneven_joint()) {
+    DerivedQuantities result = derived_quantities(g);
+    if (pump.transfer.kind == TransferKind::pistons && pump.transfer.wall)
+      tilt_by_free_play(pump, result);
+    return result;
+  }
   DerivedQuantities result;
   result.piston_area = kPi / 4 * g.bore_diameter * g.bore_diameter;
   double strokes = 0, nearest = g.piston_length, farthest = 0;

@@ -893,6 +893,38 @@ TEST(TransferDerived, AreThoseOfATurn) {
     }
 }
 
+// Tilts of pistons that turn the block: the block is behind the shaft by its free play. By vectors,
+// at many angles of one piston after the other.
+TEST(TransferDerived, TiltsOfPistonsAreThoseOfABlockThatLags) {
+  for (Case the_case : various("pistons")) {
+    const Geometry& g = the_case.pump.geometry;
+    const Model model(the_case.pump, the_case.analytic);
+    double least = 90, most = 0;
+    for (int i = 0; i < 3600; ++i) {
+      const double theta = radians(0.1 * i), psi = theta - model.free_play(theta).high;
+      for (int k = 0; k < g.pistons; ++k) {
+        const double of_joint = theta - 2 * kPi * k / g.pistons,
+                     of_bore = psi - 2 * kPi * k / g.pistons;
+        // A on its circle about z1, which is tilted about x, against the bore's axis along z2.
+        const double x =
+            g.joint_circle_radius * std::sin(of_joint) - g.bore_circle_radius * std::sin(of_bore);
+        const double y = g.joint_circle_radius * std::cos(of_joint) * std::cos(g.tilt) +
+                         g.axis_offset * std::sin(g.tilt) -
+                         g.bore_circle_radius * std::cos(of_bore);
+        const double tilt = std::asin(std::hypot(x, y) / g.piston_length);
+        least = std::min(least, tilt);
+        most = std::max(most, tilt);
+      }
+    }
+    const auto derived = analytic::derived_quantities(the_case.pump);
+    EXPECT_NEAR(derived.largest_tilt, most, 2e-6 * most);
+    // Where another piston ends the free play the tilt has a corner, which lies between two angles.
+    EXPECT_LE(derived.smallest_tilt, least + 1e-12);
+    EXPECT_GT(derived.smallest_tilt, least - 5e-6);
+    EXPECT_GT(most, 1.01 * analytic::derived_quantities(g).largest_tilt);
+  }
+}
+
 // Ends of the free play by bisection of positions, and which piston stands there.
 TEST(TransferDerived, FreePlayEndsWhereAPistonTouches) {
   const Case the_case = transfer_case("pistons_seven");

@@ -209,6 +209,9 @@ std::vector<report::DerivedQuantity> derived_section(const Case& the_case) {
   const double pressure = the_case.pressure.ports.delivery - the_case.pressure.ports.suction;
   const TransferKind kind = the_case.pump.transfer.kind;
   const bool own_strokes = the_case.pump.transfer.is_uneven_joint();
+  const char* const tilt = kind == TransferKind::pistons
+                               ? "AB against z2, the block at the end of its free play"
+                               : "AB against z2";
   std::vector<report::DerivedQuantity> rows = {
       {"displacement", "V", derived.displacement * 1e6, "cm3/rev",
        own_strokes ? "A times the sum of all strokes" : "N A stroke"},
@@ -216,8 +219,8 @@ std::vector<report::DerivedQuantity> derived_section(const Case& the_case) {
        own_strokes ? "max zB - min zB over the turn, mean of the pistons"
                    : "max zB - min zB over the turn"},
       {"piston area", "A", derived.piston_area * 1e6, "mm2", "pi Dpi^2 / 4"},
-      {"smallest piston tilt", "", derived.smallest_tilt / kRadPerDegree, "deg", "AB against z2"},
-      {"largest piston tilt", "", derived.largest_tilt / kRadPerDegree, "deg", "AB against z2"},
+      {"smallest piston tilt", "", derived.smallest_tilt / kRadPerDegree, "deg", tilt},
+      {"largest piston tilt", "", derived.largest_tilt / kRadPerDegree, "deg", tilt},
       {"ideal flow", "", derived.displacement * std::abs(the_case.operation.speed_rpm) * 1e3,
        "l/min", "V n"},
       {"ideal torque", "", derived.displacement * pressure / (2 * kPi), "Nm",

@@ -20,7 +20,8 @@ DerivedQuantities derived_quantities(const Geometry& geometry);
 
 /// The same of a pump with its transfer. With a universal joint each piston has its own trajectory:
 /// displacement is A times the sum of the strokes, stroke is their mean, and tilts are the extremes
-/// of all pistons. With pistons that drive the block all are those of a block without lag.
+/// of all pistons. With pistons that turn the block, displacement and stroke are those of a block
+/// without lag, and tilts those at the end of the free play where pistons push.
 DerivedQuantities derived_quantities(const PumpParameters& pump);
 
 }  // namespace bentaxis::analytic
