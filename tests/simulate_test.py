@@ -157,6 +157,11 @@ class RestTest(SimulateTest):
     def test_a_constant_torque_must_be_given(self):
         self.refused(self.case("constant_torque", torque_Nm=None), "torque_Nm is missing")
 
+    def test_all_keys_that_a_drive_lacks_are_named_at_once(self):
+        error = self.simulate(self.case("constant_torque", torque_Nm=None, duration_s=None), status=BAD_INPUT).stderr
+        self.assertRegex(error, r"\[drive\] duration_s is missing: must be > 0; missing too: torque_Nm$|\[drive\] torque_Nm is missing: must be a finite "
+                                r"number; missing too: duration_s$")
+
     def test_pressure_that_does_not_follow_the_motion_is_said(self):
         case = (base.REPO / "cases" / "bap63_rated_hydraulic.toml").read_text()
         path = self.folder / "case.toml"
@@ -222,6 +227,16 @@ class RestTest(SimulateTest):
         self.assertAlmostEqual(6 * 1500 * float(rows[-1]["time_s"]), 360, 2)
         sections = {run["title"]: run for run in self.report()["runs"]}
         self.assertIn("Periodic motion and its stability", sections)
+
+    def test_the_mean_of_a_periodic_motion_is_that_of_the_turn(self):
+        case = base.REPO / "cases" / "bap63_rated_hydraulic.toml"
+        out = self.simulate(case, "--steady", "--model", "analytic", "--set", "drive.kind=speed", "--set", "drive.duration_s=0.2", "--set",
+                            "drive.samples=720").stdout
+        above, mean = map(float, re.search(r"([\d.]+) bar above its mean over the last turn, ([\d.]+) bar", out).groups())
+        said = self.run_program("pressure", case, "--out", "pressure").stdout
+        self.assertEqual(mean, float(re.search(r"at a mean of ([\d.]+) bar", said).group(1)))
+        highest = float(re.search(r"at most ([\d.]+) bar", out).group(1))
+        self.assertAlmostEqual(highest - mean, above, delta=0.1)
 
     def test_a_pump_at_rest_with_oil_balances(self):
         case = base.REPO / "cases" / "bap63_motoring.toml"

@@ -535,16 +535,17 @@ std::vector<std::string> answers_of(const MotionAnswers& a) {
   if (a.backwards)
     answers.push_back(fmt::format("The shaft also turns backwards: up to {:.4g} rpm at {}.",
                                   a.backwards->rpm, milliseconds(a.backwards->at_s)));
-  answers.push_back(
-      fmt::format("Drive torque: at most {:.4g} Nm at {}; work of the drive {:.4g} kJ.",
-                  a.largest_torque, milliseconds(a.largest_torque_s), a.drive_work / 1e3));
+  answers.push_back(fmt::format(
+      "Drive torque: at most {:.4g} Nm at {}; work of the drive{} {:.4g} kJ.", a.largest_torque,
+      milliseconds(a.largest_torque_s),
+      a.drive_has_inertia ? ", which turns its own inertia too," : "", a.drive_work / 1e3));
   if (a.delivery)
     answers.push_back(
         fmt::format("Delivery pressure: at most {:.4g} bar at {}, {:.3g} bar above its mean over "
-                    "the last tenth "
-                    "of the time, {:.4g} bar.",
+                    "the last {}, {:.4g} bar.",
                     a.delivery->highest_bar, milliseconds(a.delivery->highest_s),
-                    a.delivery->highest_bar - a.delivery->end_bar, a.delivery->end_bar));
+                    a.delivery->highest_bar - a.delivery->end_bar,
+                    a.delivery->end_is_turn ? "turn" : "tenth of the time", a.delivery->end_bar));
   if (a.walls) {
     answers.push_back(fmt::format(
         "Walls: largest force {:.4g} N at {} (piston {}); {}.", a.walls->largest_N,

@@ -98,7 +98,9 @@ const DerivedEntry kDerived[] = {
      [](const analytic::DerivedQuantities& d) { return d.displacement * 1e6; }},
     {"stroke_mm", "mm", "stroke of a piston",
      [](const analytic::DerivedQuantities& d) { return d.stroke * 1e3; }},
-    {"largest_tilt_deg", "deg", "largest angle between a piston and the block axis",
+    {"largest_tilt_deg", "deg",
+     "largest angle between a piston and the block axis; of pistons that turn the block at the end "
+     "of its free play",
      [](const analytic::DerivedQuantities& d) { return d.largest_tilt * 180 / kPi; }},
 };
 
@@ -150,12 +152,13 @@ const MotionEntry kMotion[] = {
      [](const study::MotionAnswers& a) {
        return a.delivery ? a.delivery->highest_s : not_computed();
      }},
-    {"end_delivery_bar", "bar", "mean delivery pressure over the last tenth of the time", true,
+    {"end_delivery_bar", "bar",
+     "mean delivery pressure over the last tenth of the time or the last turn, what is longer",
+     true,
      [](const study::MotionAnswers& a) {
        return a.delivery ? a.delivery->end_bar : not_computed();
      }},
-    {"overshoot_bar", "bar",
-     "highest delivery pressure less its mean over the last tenth of the time", true,
+    {"overshoot_bar", "bar", "highest delivery pressure less end_delivery_bar", true,
      [](const study::MotionAnswers& a) {
        return a.delivery ? a.delivery->highest_bar - a.delivery->end_bar : not_computed();
      }},

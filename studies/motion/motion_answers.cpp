@@ -46,6 +46,8 @@ std::optional<MotionAnswers::Backwards> backwards(const Trajectory& run, double 
   return found;
 }
 
+constexpr double kWholeTurn = 360 * (1 - 1e-9);  // deg
+
 std::optional<MotionAnswers::Delivery> delivery_of(const Trajectory& run) {
   if (!run.oil) return std::nullopt;
   const auto& columns = run.oil->columns;
@@ -54,15 +56,29 @@ std::optional<MotionAnswers::Delivery> delivery_of(const Trajectory& run) {
   if (found == columns.end()) return std::nullopt;
   const auto column = static_cast<std::size_t>(found - columns.begin());
   MotionAnswers::Delivery delivery;
-  const std::size_t rows = rows_of(run), tail = std::max<std::size_t>(1, rows / 10);
+  const std::size_t rows = rows_of(run);
+  // A tenth of less than ten turns is part of a ripple, whose mean is another.
+  const auto before_end = [&](std::size_t row) {
+    return std::abs(run.state(rows - 1, StateColumn::theta) - run.state(row, StateColumn::theta));
+  };
+  std::size_t from = rows - std::max<std::size_t>(1, rows / 10), turn = rows - 1;
+  while (turn > 0 && before_end(turn) < kWholeTurn) --turn;
+  if (before_end(turn) >= kWholeTurn && turn < from) {
+    from = turn;
+    delivery.end_is_turn = true;
+  }
+  const double time = time_of(run, rows - 1) - time_of(run, from);
   for (std::size_t row = 0; row < rows; ++row) {
     const double pressure = run.oil->value(row, column);
     if (row == 0 || pressure > delivery.highest_bar) {
       delivery.highest_bar = pressure;
       delivery.highest_s = time_of(run, row);
     }
-    if (row >= rows - tail) delivery.end_bar += pressure / static_cast<double>(tail);
+    if (row > from)
+      delivery.end_bar += (pressure + run.oil->value(row - 1, column)) / 2 *
+                          (time_of(run, row) - time_of(run, row - 1)) / time;
   }
+  if (!(time > 0)) delivery.end_bar = run.oil->value(rows - 1, column);
   return delivery;
 }
 
@@ -138,6 +154,7 @@ MotionAnswers motion_answers(const Trajectory& run, const Case& the_case) {
         answers.largest_torque_s = time_of(run, row);
       }
   answers.drive_work = run.record.work_of_drives;
+  answers.drive_has_inertia = the_case.drive && the_case.drive->motor;
   answers.delivery = delivery_of(run);
   answers.beyond_plate = beyond_plate(run, the_case);
   answers.walls = walls_of(run, the_case);

@@ -28,14 +28,16 @@ struct MotionAnswers {
   };
   std::optional<Backwards> backwards;
 
-  double largest_torque = 0;    ///< Nm, drive torque Td, by magnitude, with its sign
-  double largest_torque_s = 0;  ///< when
-  double drive_work = 0;        ///< J, of what drives the shaft
+  double largest_torque = 0;       ///< Nm, drive torque Td, by magnitude, with its sign
+  double largest_torque_s = 0;     ///< when
+  double drive_work = 0;           ///< J, of what drives the shaft
+  bool drive_has_inertia = false;  ///< which the work turns too, beside the drive torque's own
 
   /// Of the delivery pressure, where the oil is simulated.
   struct Delivery {
     double highest_bar = 0, highest_s = 0;
-    double end_bar = 0;  ///< mean over the last tenth of the rows
+    double end_bar = 0;        ///< mean over the last tenth of the time, or over the last turn
+    bool end_is_turn = false;  ///< which is longer, and is what counts then
   };
   std::optional<Delivery> delivery;
 
