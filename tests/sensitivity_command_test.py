@@ -167,6 +167,24 @@ class Sensitivity(unittest.TestCase):
         self.assertEqual(done.stdout.count(f"and {len(parameters) - 8} more in sensitivity.csv\n"), outputs)
         self.assertLessEqual({"pump.tilt_deg", "port_plate.inner_land_mm.2", "operation.speed_rpm"}, parameters)
 
+    def test_an_error_covers_what_shorter_steps_give(self):
+        """Lives follow the largest of some samples: a scheme for smooth functions was 5000 times too sure of them."""
+        case, name = REPO / "cases/bap63_bearing_life.toml", "port_plate.delivery_arc_deg.1"
+        outputs = "life.system_h,life.tapered_h,life.tapered_P_N,life.cylindrical_h"
+        run = [PROGRAM, "sensitivity", case, "--output", outputs, "--vary", name, "--out", self.out]
+        subprocess.run(run, capture_output=True, check=True, timeout=SECONDS)
+        found = {row["output"]: (float(row["derivative"]), float(row["error"])) for row in rows_of(self.out / "sensitivity.csv")}
+        self.assertEqual(set(found), set(outputs.split(",")))
+        run = [PROGRAM, "sweep", case, "--output", outputs, "--vary", f"{name}=203.99,204.01", "--out", self.out]
+        subprocess.run(run, capture_output=True, check=True, timeout=SECONDS)
+        low, high = rows_of(self.out / "sweep.csv")
+        for output, (derivative, error) in found.items():
+            column = next(key for key in low if key.startswith(output))
+            short = (float(high[column]) - float(low[column])) / 0.02
+            with self.subTest(output):
+                self.assertLess(abs(derivative - short), error)
+                self.assertLess(error, 0.1 * abs(derivative))
+
     def test_what_is_no_number_is_refused(self):
         for options, words in ((("--vary", "pump.pistons"), "pump.pistons: is not a continuous number"),
                                (("--vary", "pump.tilt"), "pump.tilt_deg"),

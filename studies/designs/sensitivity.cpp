@@ -506,11 +506,14 @@ double first_step(const Variable& variable, const Case& base, double at) {
 }
 
 // C. J. F. Ridders, Advances in Engineering Software 4 (1982) 75: central differences of falling
-// steps in Neville's scheme; the entry that its neighbours confirm best.
+// steps in Neville's scheme; the entry that its neighbours confirm best. Of a function that is not
+// smooth (the largest of some samples) an entry may be confirmed by chance: shorter steps must come
+// to it too.
 class Ridders {
  public:
   // The difference of one step more, half as long as the last. @return false: no use to go on
   bool add(double difference) {
+    differences_.push_back(difference);
     std::vector<double> row = {difference};
     double factor = 1;
     for (std::size_t j = 0; j < last_.size(); ++j) {
@@ -520,6 +523,7 @@ class Ridders {
       if (error <= error_) {
         error_ = error;
         value_ = row[j + 1];
+        level_ = differences_.size() - 1;
       }
     }
     const bool worse = last_.size() > 1 && std::abs(row.back() - last_.back()) > 2 * error_;
@@ -527,11 +531,29 @@ class Ridders {
     return !worse;
   }
   double value() const { return value_; }
-  double error() const { return error_; }
+  double error() const {
+    const std::size_t count = differences_.size();
+    double error = error_;
+    // By two steps alone, of those shorter than what the value rests on the nearest.
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t k = std::min(level_ + 1, count - 1); k < count && k > 0; ++k) {
+      const double by_two = differences_[k] + (differences_[k] - differences_[k - 1]) / 3;
+      nearest = std::min(nearest, std::abs(by_two - value_));
+    }
+    error = std::max(error, nearest);
+    // Halving a step takes away three quarters of what is left, where a function is smooth.
+    if (count < 3) return error;
+    const double* const last = &differences_[count - 3];
+    const double ratio = (last[0] - last[1]) / (last[1] - last[2]);
+    if (ratio > 3 && ratio < 5) return error;
+    const auto [low, high] = std::minmax_element(last, last + 3);
+    return std::max(error, *high - *low);
+  }
 
  private:
-  std::vector<double> last_;
+  std::vector<double> differences_, last_;
   double value_ = 0, error_ = std::numeric_limits<double>::infinity();
+  std::size_t level_ = 0;  // of the shortest step in value_
 };
 
 // Of one variable alone: others stay as the case has them, or follow it where they do by default.
