@@ -144,6 +144,10 @@ std::optional<IndexEntry> index_entry(const std::string& json_text) {
       const std::string name = text_in(warning, "name");
       entry.warnings.push_back(name.empty() ? text_in(warning, "code") : name);
     }
+  // Where there is a warning, it says so too.
+  if (const std::string where = text_in(verdict, "not_valid");
+      !where.empty() && entry.warnings.empty())
+    entry.warnings.push_back("not valid " + where);
   entry.word = text_in(verdict, "word");
   const Json& reference = member(verdict, "reference");
   if (const Json& held = member(reference, "agrees");

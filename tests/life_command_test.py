@@ -7,6 +7,7 @@ usage: life_command_test.py BENTAXIS REPO_ROOT [options of unittest]
 import csv
 import json
 import pathlib
+import re
 import sys
 import unittest
 
@@ -93,6 +94,20 @@ class LifeTest(ProgramTest):
             loads = [float(row["tapered_P_N"]) for row in self.rows("life_loads.csv") if row["model"] == model]
             mean = (sum(load ** (10 / 3) for load in loads) / len(loads)) ** 0.3
             self.assertAlmostEqual(tapered[column], mean, delta=1e-9 * mean)
+
+    def test_what_is_not_valid_is_said_in_report_and_index(self):
+        out = self.run_program(*self.life()).out
+        said = re.search(r"Not valid (over [\d.]+ % of the revolutions)", out).group(1)
+        report = json.loads((self.folder / "out" / "life.json").read_text())
+        self.assertEqual(report["verdict"]["not_valid"], said)
+        self.assertIn("1 with warnings", self.run_program("index", "out").out)
+        self.assertIn("not valid " + said, (self.folder / "out" / "index.html").read_text())
+
+    def test_at_rest_every_angle_counts(self):
+        out = self.run_program(*self.life("--set", "operation.speed_rpm=0")).out
+        shares = [float(share) for share in re.findall(r"exceeded over ([\d.]+) % of the angles", out)]
+        self.assertTrue(shares)
+        self.assertTrue(all(0 < share < 100 for share in shares), out)
 
     def test_the_report_says_what_the_files_say(self):
         result = self.run_program(*self.life(*self.duty("share,speed_rpm,pressure.delivery_bar\n3,1500,275\n1,2000,120\n")))

@@ -144,6 +144,19 @@ std::string limit_name(const study::LifeLimit& limit) {
   return to_string(limit.bearing) + " bearing: " + limit.limit;
 }
 
+// "over 7.5 % of the revolutions"; a pump at rest has angles alone.
+std::string share_text(double share, const PumpLife& life) {
+  return fmt::format("over {:.3g} % of the {}", 100 * share,
+                     life.mean_speed_rpm == 0 ? "angles" : "revolutions");
+}
+
+// Of the limit that is exceeded most; "" where none is.
+std::string not_valid_of(const PumpLife& life) {
+  double share = 0;
+  for (const study::LifeLimit& l : life.limits) share = std::max(share, l.violated_share);
+  return share > 0 ? share_text(share, life) : "";
+}
+
 // Which bearing sets the life, and which row of the duty cycle uses up most of it.
 std::vector<std::string> answers_of(const LifeStudy& s) {
   const PumpLife& life = s.analytic.life;
@@ -167,9 +180,8 @@ std::vector<std::string> answers_of(const LifeStudy& s) {
   }
   for (const study::LifeLimit& l : life.limits)
     if (l.violated_share > 0)
-      answers.push_back(
-          fmt::format("Not valid over {:.3g} % of the revolutions, where this does not hold: {}.",
-                      100 * l.violated_share, limit_name(l)));
+      answers.push_back(fmt::format("Not valid {}, where this does not hold: {}.",
+                                    share_text(l.violated_share, life), limit_name(l)));
   return answers;
 }
 
@@ -262,6 +274,7 @@ report::Document life_document(const LifeStudy& s, const report::Lines& program,
       study::case_document(description, s.the_case.name + ": life of the bearings", program);
   document.verdict = report::Verdict{s.agrees(), headline(s)};
   document.verdict->answers = answers_of(s);
+  document.verdict->not_valid = not_valid_of(s.analytic.life);
   document.meaning = agreement_text(s) +
                      " The rating life includes only fatigue of the rolling contacts under these "
                      "loads; it is as reliable as the ratings and loads.";
@@ -344,8 +357,9 @@ std::string life_text(const LifeStudy& s) {
   }
   for (const study::LifeLimit& l : s.analytic.life.limits)
     if (l.violated_share > 0)
-      text += fmt::format("exceeded over {:.3g} % of the revolutions: {} (worst {:.4g} N): {}\n",
-                          100 * l.violated_share, limit_name(l), l.worst, l.consequence);
+      text += fmt::format("exceeded {}: {} (worst {:.4g} N): {}\n",
+                          share_text(l.violated_share, s.analytic.life), limit_name(l), l.worst,
+                          l.consequence);
   return text;
 }
 

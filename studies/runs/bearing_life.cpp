@@ -121,10 +121,13 @@ std::vector<LifeLimit> limits_of(const BearingRatings& b, const std::vector<Life
   // Scans what must not be negative at any angle; `shown` is what is said of it.
   const auto scan = [&](LifeLimit limit, const OfAngle& not_negative, const OfAngle& shown) {
     double all = 0, violated = 0, smallest = HUGE_VAL;
+    // At standstill every angle counts alike: there are no revolutions to weigh them by.
+    const bool turns =
+        std::any_of(revolutions.begin(), revolutions.end(), [](double count) { return count > 0; });
     for (std::size_t i = 0; i < points.size(); ++i) {
       const LifePoint& p = points[i];
       const BearingLoads& loads = p.loads[static_cast<std::size_t>(limit.bearing)];
-      const double each = revolutions[i] / static_cast<double>(p.theta_deg.size());
+      const double each = (turns ? revolutions[i] : 1) / static_cast<double>(p.theta_deg.size());
       for (std::size_t k = 0; k < p.theta_deg.size(); ++k) {
         const double value = not_negative(loads, k);
         all += each;
@@ -136,8 +139,7 @@ std::vector<LifeLimit> limits_of(const BearingRatings& b, const std::vector<Life
         limit.theta_deg = p.theta_deg[k];
       }
     }
-    // At standstill every angle counts alike: there are no revolutions to weigh them by.
-    limit.violated_share = all > 0 ? violated / all : smallest < 0 ? 1 : 0;
+    limit.violated_share = all > 0 ? violated / all : 0;
     limits.push_back(std::move(limit));
   };
   const OfAngle axial = [](const BearingLoads& l, std::size_t k) { return l.axial[k]; };
