@@ -179,8 +179,9 @@ std::vector<Row> oil_figures(const hydraulics::Summary& s, std::size_t models) {
   flow.note += std::string(flow.note.empty() ? "" : "; ") + "at the density in the suction port";
   return {std::move(flow),
           row("flow to the load, maximum less minimum over the mean", "%", 100 * s.flow_ripple),
-          row("volumetric efficiency", "%", 100 * s.volumetric_efficiency), std::move(least),
-          std::move(greatest)};
+          row(s.flow < 0 ? "flow to the load over ideal flow" : "volumetric efficiency", "%",
+              100 * s.volumetric_efficiency),
+          std::move(least), std::move(greatest)};
 }
 
 }  // namespace bentaxis::study

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/files/csv.h"
@@ -33,11 +34,15 @@ double bar(const OperatingPoint& point) {
 std::vector<std::string> pressure_answers(const OperatingPoint& point,
                                           const std::vector<report::TimingRow>& timing) {
   const hydraulics::Summary& s = point.state().summary;
+  // Of a motor the oil that it takes is what is spent.
+  const bool motor = s.flow < 0;
   std::vector<std::string> answers = {fmt::format(
-      "Delivers {:.4g} l/min at a mean of {:.4g} bar and {:.5g} rpm: volumetric efficiency {:.4g} "
+      "{} {:.4g} l/min at a mean of {:.4g} bar and {:.5g} rpm: volumetric efficiency{} {:.4g} "
       "%, ripple {:.3g} bar peak to peak.",
-      s.flow / kLitrePerMinute, s.delivery_mean / kPascalPerBar,
-      point.the_case().operation.speed_rpm, 100 * s.volumetric_efficiency,
+      motor ? "Takes" : "Delivers", std::abs(s.flow) / kLitrePerMinute,
+      s.delivery_mean / kPascalPerBar, point.the_case().operation.speed_rpm,
+      motor ? " as a motor" : "",
+      100 * (motor ? 1 / s.volumetric_efficiency : s.volumetric_efficiency),
       (s.delivery_greatest - s.delivery_least) / kPascalPerBar)};
   answers.push_back(timing_answer(timing));
   return answers;
