@@ -66,6 +66,7 @@ inline void to_json(nlohmann::json& json, const ChannelComparison& c) {
   json["own_peak"] = known(c.own_peak);
   json["max_abs"] = known(c.largest);
   json["max_over_peak"] = known(c.largest_over_peak());
+  json["allowed"] = known(c.allowed);
   json["rms"] = known(c.rms);
   json["rms_over_peak"] = known(c.rms_over_peak());
   json["theta_of_max_deg"] = known(c.theta_of_largest_deg);
