@@ -1216,7 +1216,7 @@ class MemoryTest(ProgramTest):
                              (("simulate", start, "--model", "analytic", "--set", "drive.samples=200000"), "[drive] samples"),
                              (("simulate", start, "--set", "drive.samples=200000"), "[drive] samples")):
             with self.subTest(command=command):
-                line = self.refused(*command, preexec_fn=lambda: limit_memory(little if command[0] == "simulate" else more))
+                line = self.refused(*command, preexec_fn=lambda: limit_memory(little if command[0] in ("simulate", "compare") else more))
                 self.assertRegex(line, rf"{re.escape(key)} = 200000(, revolutions = 20)?: .*about [0-9.]+ GB of memory are needed, and [0-9.]+ GB are "
                                        rf"available; lower {re.escape(key)}")
         result = self.run_program("show", rated, "--out", "out", status=BAD_INPUT, preexec_fn=lambda: limit_memory(little))

@@ -135,6 +135,7 @@ int compare(const CompareOptions& options) {
   const auto samples = static_cast<std::size_t>(options.uncertainty);
   if (samples > 0) designs::check_sampling(given, samples);
   ReportFolders folders(options.place);
+  if (folders.has_figures()) study::require_memory(given, study::Kept::drawn, options.choice.way);
 
   study::ComparisonOptions how;
   how.way = options.choice.way;

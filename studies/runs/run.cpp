@@ -39,8 +39,8 @@ void check(const RunOptions& options) {
 
 // What lies in memory of every number of a model's table when most does: the tables, columns sorted
 // apart, figures, and text. scripts/measure_memory measures them; of both models it is most with
-// `--figures`, for which all rows of all curves are kept.
-double copies_of(Kept kept) {
+// resolved teeth.
+double copies_of(Kept kept, bool teeth) {
   switch (kept) {
     case Kept::table:
     case Kept::simulated:
@@ -48,15 +48,20 @@ double copies_of(Kept kept) {
     case Kept::shown:
       return 8;
     case Kept::compared:
+      return teeth ? 10 : 5;
+    case Kept::lumped:
+      return 20;
+    case Kept::drawn:
       break;
   }
-  return 20;
+  return teeth ? 34 : 10;
 }
 
 void require_rows(const Case& the_case, Kept kept, double rows, const std::string& because,
                   const std::string& advice) {
   const double columns = static_cast<double>(ChannelLayout(the_case.pump).size());
-  const double needed = copies_of(kept) * rows * columns * sizeof(double);
+  const bool teeth = the_case.pump.gear.contact == ToothContact::teeth;
+  const double needed = copies_of(kept, teeth) * rows * columns * sizeof(double);
   constexpr double kLittle = 5e7;  // not worth asking the system, which takes its time
   if (needed < kLittle) return;
   require_memory(

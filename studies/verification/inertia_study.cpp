@@ -75,7 +75,7 @@ bool InertiaStudy::agrees() const {
 InertiaStudy run_inertia_study(const Case& as_read, const InertiaOptions& options,
                                const PartProgress& progress_of) {
   // Of each speed both pistons by both models in two scenes, and what is made of the fastest.
-  require_memory(as_read, Kept::compared, Way::driven, options.speeds.size() + 1);
+  require_memory(as_read, Kept::lumped, Way::driven, options.speeds.size() + 1);
   InertiaStudy s;
   s.the_case = prepare(as_read, progress_of).the_case;
   const Case& the_case = s.the_case;

@@ -89,6 +89,8 @@ enum class Kept {
   table,      ///< one model's, and its text
   shown,      ///< one model's with all loads, figures and the page
   compared,   ///< both models' with figures and the page
+  drawn,      ///< the same with a file of each figure, which has all rows
+  lumped,     ///< of an inertia study, for each speed and once more
   simulated,  ///< one model's in time, with figures and the page
 };
 /// @param runs  that are kept at a time
