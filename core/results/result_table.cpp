@@ -110,10 +110,9 @@ ResultTable select_rows(const ResultTable& table, const std::vector<std::size_t>
   selected.channels = table.channels;
   selected.provenance = table.provenance;
   selected.reserve_rows(rows.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    selected.theta_deg.push_back(table.theta_deg[rows[i]]);
-    for (std::size_t c = 0; c < table.columns(); ++c)
-      selected.values.push_back(table.at(rows[i], c));
+  for (const std::size_t row : rows) {
+    selected.theta_deg.push_back(table.theta_deg[row]);
+    for (std::size_t c = 0; c < table.columns(); ++c) selected.values.push_back(table.at(row, c));
   }
   return selected;
 }
