@@ -896,7 +896,7 @@ TEST(TransferDerived, AreThoseOfATurn) {
 // Tilts of pistons that turn the block: the block is behind the shaft by its free play. By vectors,
 // at many angles of one piston after the other.
 TEST(TransferDerived, TiltsOfPistonsAreThoseOfABlockThatLags) {
-  for (Case the_case : various("pistons")) {
+  for (const Case& the_case : various("pistons")) {
     const Geometry& g = the_case.pump.geometry;
     const Model model(the_case.pump, the_case.analytic);
     double least = 90, most = 0;
