@@ -34,6 +34,8 @@ constexpr double kLargestGap = 30;
 constexpr double kExplained = 0.01;
 // ...or of a shifted curve this share: the spline between its points is not exact.
 constexpr double kExplainedByShift = 0.25;
+// ...or of an offset this one: it is the whole cause.
+constexpr double kLeftByOffset = 0.1;
 // Of shifts that leave as much but for this share the smallest is meant.
 constexpr double kAsGood = 0.01;
 // Hints look at no more angles than this.
@@ -295,8 +297,8 @@ class Hints {
     std::vector<double> moved = theirs;
     for (double& value : moved) value += offset;
     const double with_factor = rms(theirs, ours, factor), with_offset = rms(moved, ours, 1);
-    if (with_offset <= enough && with_offset < with_factor)
-      return fmt::format("the result is the reference {} {:.6g} {} at every angle",
+    if (with_offset <= std::min(enough, kLeftByOffset * original) && with_offset < with_factor)
+      return fmt::format("the result is the reference {} {:.4g} {} at every angle",
                          offset < 0 ? "less" : "plus", std::abs(offset), channel.channel.unit);
     if (std::abs(factor - 1) > kExplained && with_factor <= enough)
       return std::abs(factor + 1) < kExplained
