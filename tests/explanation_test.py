@@ -184,7 +184,7 @@ class ExplanationTest(unittest.TestCase):
                 self.assertEqual({row["parameter"] for row in rows if row["explains"] == "yes"},
                                  {change.split("=")[0] for change in changes} - self.absent())
                 self.assertIn("100 % of the difference", sentence)
-                self.assertNotIn("that is not all", sentence)
+                self.assertNotIn("other causes remain", sentence)
 
     def absent(self):
         """Of the names above those whose value is 0 in the case: they cannot be left out of it."""

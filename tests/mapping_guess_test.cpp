@@ -473,19 +473,23 @@ TEST(MappingMatches, SignsOfSingleComponents) {
       if (!theirs[j].empty()) p.theirs_ours[j][i] = dot(theirs[j], ours[i]);
       p.ours_ours[j][i] = dot(ours[j], ours[i]);
     }
+  for (std::size_t j = 0; j < 2; ++j) p.theirs_theirs[j] = dot(theirs[j], theirs[j]);
   double product = 1, own = 2;  // added to
   add_component(p, axes, 0, product, own);
   EXPECT_NEAR(product, 1 + dot(theirs[0], theirs[0]) / 2, 1e-12);
   EXPECT_NEAR(own, 2 + dot(theirs[0], theirs[0]) / 4, 1e-12);
-  EXPECT_NEAR(cost_without_signs(p, axes, 2, theirs), 0, 1e-7);
-  EXPECT_NEAR(cost_without_signs(p, axes, 1.5, theirs), 0.25, 1e-12);
-  EXPECT_NEAR(cost_without_signs(p, axes, 3, theirs), 0.5, 1e-12);
-  EXPECT_NEAR(cost_of_mixed(p, axes, 2, theirs), 0, 1e-7);
+  EXPECT_NEAR(cost_without_signs(p, axes, 2), 0, 1e-7);
+  EXPECT_NEAR(cost_without_signs(p, axes, 1.5), 0.25, 1e-12);
+  EXPECT_NEAR(cost_without_signs(p, axes, 3), 0.5, 1e-12);
+  EXPECT_NEAR(cost_of_mixed(p, axes, 2), 0, 1e-7);
   // The same two exchanged.
-  std::swap(theirs[0], theirs[1]);
+  std::swap(p.theirs_theirs[0], p.theirs_theirs[1]);
   std::swap(p.theirs_ours[0], p.theirs_ours[1]);
-  EXPECT_GT(cost_without_signs(p, axes, 2, theirs), 0.3);
-  EXPECT_NEAR(cost_of_mixed(p, axes, 2, theirs), 0, 1e-7);
+  EXPECT_GT(cost_without_signs(p, axes, 2), 0.3);
+  EXPECT_NEAR(cost_of_mixed(p, axes, 2), 0, 1e-7);
+  // A component that is 0 is not one that the file lacks.
+  p.theirs_theirs[2] = 0;
+  EXPECT_GT(cost_of_mixed(p, axes, 2), 0.3);
 }
 
 // ---- Frames and numbers
@@ -1027,6 +1031,18 @@ TEST(MappingRecords, AVectorOfWhichSomeFitsMustBeDecided) {
                 testing::Contains(Pair("By", testing::HasSubstr("Bx looks like Rb1_x1_N"))));
     EXPECT_EQ(found.recognised(), 5U);
   }
+}
+
+TEST(MappingRecords, AColumnOfAnotherSizeMustBeDecided) {
+  const MappingGuess found = guess(record(1, 0,
+                                          {{"Bx", "N", of("Rb1_x1_N")},
+                                           {"By", "N", of("Rb1_y1_N")},
+                                           {"Bz", "N", of("Rb1_z1_N")},
+                                           {"load", "Nm", of("Td_z1_Nm", 3)}}));
+  EXPECT_THAT(found.unrecognised, ElementsAre("load"));
+  EXPECT_THAT(
+      found.ignored,
+      ElementsAre(Pair("load", testing::HasSubstr("looks like Td_z1_Nm, but is of another"))));
 }
 
 // Whichever of the components it is: its vector is wrong, and no frame that turns the others.

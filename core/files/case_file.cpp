@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 
@@ -218,9 +217,7 @@ class CaseReader {
   static void require_si(TableReader& in, const Parameter& p, double value) {
     const double si = p.unit.to_si == nullptr ? value : p.unit.to_si(value);
     if (in.has(p.key) && value != 0 && !std::isnormal(si))
-      in.fail(p.key, "must be 0 or of a size between " +
-                         number_text(std::numeric_limits<double>::min()) + " and " +
-                         number_text(std::numeric_limits<double>::max()) + " in SI units");
+      in.fail(p.key, "must be 0 or, in SI units, of a magnitude between 2.3e-308 and 1.7e308");
   }
 
   void read_curve(const TableReader& in, const Parameter& parameter, const CurveField& field,

@@ -21,7 +21,8 @@ void UnitOption::add_to(CommandParser command) {
               "an input of the pump (A) gets the value of an output of the FMU (B), or an input of "
               "the FMU (A) that of a column of the CSV files (B). Inputs of the pump: drive_speed, "
               "drive_acceleration, drive_torque, suction_pressure, delivery_pressure, load_share. "
-              "Equal names are always connected")
+              "Equal names are always connected. Where both sides have A and B: pump:A=B or "
+              "fmu:A=B, for the input of the pump or of the FMU")
       .repeatable()
       .text("A=B");
   command

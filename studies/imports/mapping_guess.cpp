@@ -317,7 +317,6 @@ class Guesser {
   // The file's vectors at one direction and phase, and their products with those of the model that
   // they may be.
   struct Vectors {
-    std::vector<std::array<Series, 3>> theirs;
     std::vector<double> squares;
     std::vector<std::vector<std::size_t>> allowed;
     std::vector<std::vector<Products>> products;
@@ -329,11 +328,13 @@ class Guesser {
     at.allowed.resize(groups_.size());
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       std::array<Series, 3> parts;
+      std::array<std::optional<double>, 3> own_squares;
       double square = 0;
       for (std::size_t j = 0; j < 3; ++j)
         if (groups_[g].columns[j]) {
           parts[j] = sampled(*groups_[g].columns[j], sign, phase, n_);
-          square += dot(parts[j], parts[j]);
+          own_squares[j] = dot(parts[j], parts[j]);
+          square += *own_squares[j];
         }
       const auto words = words_of(groups_[g].key);
       const auto* unit = compare::find_unit(groups_[g].unit);
@@ -345,14 +346,15 @@ class Guesser {
             at.allowed[g].push_back(v);
       }
       at.products[g].resize(vectors_.size());
-      for (const std::size_t v : at.allowed[g])
+      for (const std::size_t v : at.allowed[g]) {
+        Products& p = at.products[g][v];
+        p.theirs_theirs = own_squares;
         for (std::size_t i = 0; i < 3; ++i)
           for (std::size_t j = 0; j < 3; ++j) {
-            Products& p = at.products[g][v];
             if (!parts[j].empty()) p.theirs_ours[j][i] = dot(parts[j], vectors_[v].parts[i]);
             p.ours_ours[j][i] = dot(vectors_[v].parts[j], vectors_[v].parts[i]);
           }
-      at.theirs.push_back(std::move(parts));
+      }
       at.squares.push_back(square);
     }
     return at;
@@ -422,18 +424,28 @@ class Guesser {
     return score;
   }
 
+  // The unit that makes vector v as large as group g, and the factor to it; no name: none does.
+  struct BySize {
+    std::string unit;
+    double factor = 0;
+  };
+  BySize unit_by_size(const Vectors& at, std::size_t g, std::size_t v) const {
+    const auto& squares = at.products[g][v].ours_ours;
+    const Channel& ours = vectors_[v].channel;
+    const double own = squares[0][0] + squares[1][1] + squares[2][2];
+    if (own <= 0) return {};
+    const std::string unit =
+        unit_for(std::sqrt(at.squares[g] / own), ours.unit, ours.unit_in_si, groups_[g].unit);
+    if (unit.empty()) return {};
+    return {unit, ours.unit_in_si / compare::find_unit(unit)->si};
+  }
+
   // How well vector v in a frame is group g with its components in another order and of any signs.
   double mixed_cost(const Vectors& at, std::size_t g, std::size_t v,
                     const FrameChoice& frame) const {
-    const Products& p = at.products[g][v];
-    const Channel& ours = vectors_[v].channel;
-    const double own = p.ours_ours[0][0] + p.ours_ours[1][1] + p.ours_ours[2][2];
-    if (own <= 0) return 1;
-    const std::string unit =
-        unit_for(std::sqrt(at.squares[g] / own), ours.unit, ours.unit_in_si, groups_[g].unit);
-    if (unit.empty()) return 1;
-    return cost_of_mixed(p, to_own(frame, vectors_[v]),
-                         ours.unit_in_si / compare::find_unit(unit)->si, at.theirs[g]);
+    const BySize by = unit_by_size(at, g, v);
+    if (by.unit.empty()) return 1;
+    return cost_of_mixed(at.products[g][v], to_own(frame, vectors_[v]), by.factor);
   }
 
   Assignment assign(double sign, double phase) const {
@@ -552,19 +564,14 @@ class Guesser {
                              : 0;  // set by the numbering
       for (const std::size_t v : at.allowed[g]) {
         const Channel& ours = vectors_[v].channel;
-        const Products& p = at.products[g][v];
         if (piston > 0 && ours.piston != piston) continue;
-        const Axes axes = to_own(best.frame, vectors_[v]);
-        double own = 0;
-        for (std::size_t i = 0; i < 3; ++i) own += p.ours_ours[i][i];
+        const BySize by = unit_by_size(at, g, v);
+        if (by.unit.empty()) continue;
         Match m;
         m.index = v;
-        m.unit = own > 0 ? unit_for(std::sqrt(at.squares[g] / own), ours.unit, ours.unit_in_si,
-                                    groups_[g].unit)
-                         : "";
-        if (m.unit.empty()) continue;
-        const double factor = ours.unit_in_si / compare::find_unit(m.unit)->si;
-        const double cost = cost_without_signs(p, axes, factor, at.theirs[g]);
+        m.unit = by.unit;
+        const double cost =
+            cost_without_signs(at.products[g][v], to_own(best.frame, vectors_[v]), by.factor);
         if (cost >= least) continue;
         least = cost;
         m.cost = 1;
@@ -785,7 +792,9 @@ MappingGuess Guesser::finish(const Found& found) {
           fits ? "like another column, looks like " + ours->name
           : parts.empty()
               ? "no channel has a similar curve"
-              : "not recognised: " + parts + ", but together they are no vector of the pump");
+              : "not recognised: " + parts +
+                    (columns.size() > 1 ? ", but together they are not a vector of the pump"
+                                        : ", but is of another size"));
       if (!parts.empty()) guess.unrecognised.push_back(table_.header[column]);
     }
     return false;

@@ -385,40 +385,25 @@ void add_component(const Products& p, const Axes& axes, std::size_t j, double& p
   }
 }
 
-namespace {
-
-// Of components that are each of the better sign, those of theirs being ours in an order.
-double cost_in_order(const Products& p, const Axes& axes, double factor,
-                     const std::array<Series, 3>& theirs, const std::array<std::size_t, 3>& order) {
+double cost_without_signs(const Products& p, const Axes& axes, double factor) {
   double difference = 0, square = 0;
   for (std::size_t j = 0; j < 3; ++j) {
-    if (theirs[j].empty()) continue;
-    const auto& axis = axes[order[j]];
+    if (!p.theirs_theirs[j]) continue;
     double product = 0, own = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      product += axis[i] * p.theirs_ours[j][i];
-      for (std::size_t k = 0; k < 3; ++k) own += axis[i] * axis[k] * p.ours_ours[i][k];
-    }
-    const double theirs_square = dot(theirs[j], theirs[j]);
-    difference += theirs_square - 2 * factor * std::abs(product) + factor * factor * own;
-    square += theirs_square;
+    add_component(p, axes, j, product, own);
+    difference += *p.theirs_theirs[j] - 2 * factor * std::abs(product) + factor * factor * own;
+    square += *p.theirs_theirs[j];
   }
   return std::sqrt(std::max(0.0, difference) / square);
 }
 
-}  // namespace
-
-double cost_without_signs(const Products& p, const Axes& axes, double factor,
-                          const std::array<Series, 3>& theirs) {
-  return cost_in_order(p, axes, factor, theirs, {0, 1, 2});
-}
-
-double cost_of_mixed(const Products& p, const Axes& axes, double factor,
-                     const std::array<Series, 3>& theirs) {
+double cost_of_mixed(const Products& p, const Axes& axes, double factor) {
   std::array<std::size_t, 3> order = {0, 1, 2};
   double least = std::numeric_limits<double>::max();
-  do least = std::min(least, cost_in_order(p, axes, factor, theirs, order));
-  while (std::next_permutation(order.begin(), order.end()));
+  do {
+    const Axes ordered = {axes[order[0]], axes[order[1]], axes[order[2]]};
+    least = std::min(least, cost_without_signs(p, ordered, factor));
+  } while (std::next_permutation(order.begin(), order.end()));
   return least;
 }
 

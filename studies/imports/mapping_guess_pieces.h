@@ -116,17 +116,16 @@ Match match_of(double square, double product, double own, const std::string& our
 struct Products {
   std::array<std::array<double, 3>, 3> theirs_ours{};
   std::array<std::array<double, 3>, 3> ours_ours{};
+  std::array<std::optional<double>, 3> theirs_theirs{};  // none: the file lacks the component
 };
 // Adds those of component j of theirs with the vector in some axes, and of the vector by itself.
 void add_component(const Products& p, const Axes& axes, std::size_t j, double& product,
                    double& own);
 // As a match's cost, with the better sign of each component: what is found so has a wrong sign
 // somewhere, and must be compared, not left out.
-double cost_without_signs(const Products& p, const Axes& axes, double factor,
-                          const std::array<Series, 3>& theirs);
+double cost_without_signs(const Products& p, const Axes& axes, double factor);
 // Likewise with the components in the order that fits best: two of them may have been exchanged.
-double cost_of_mixed(const Products& p, const Axes& axes, double factor,
-                     const std::array<Series, 3>& theirs);
+double cost_of_mixed(const Products& p, const Axes& axes, double factor);
 
 // ---- Frames and numbers
 

@@ -192,9 +192,9 @@ std::string proposal_text(const MappingGuess& guess) {
       text += line + "\n";
   if (guess.shift_not_taken_deg != 0)
     text += fmt::format(
-        "not shifted: {0:.3g} deg would fit better, and still not well, as a wrong port timing "
-        "would "
-        "too; if the record's angle begins elsewhere, set offset_deg = {0:.3g} in the mapping\n",
+        "no phase shift: {0:.3g} deg would fit better, but not well, and a wrong port timing looks "
+        "the same; if the angle of the record begins elsewhere, set offset_deg = {0:.3g} in the "
+        "mapping\n",
         guess.shift_not_taken_deg);
   return text;
 }

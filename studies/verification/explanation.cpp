@@ -52,8 +52,8 @@ std::string Explanation::text() const {
       change_text(*found), found->parameters.size() == 1 ? "explains" : "together explain",
       percent(found->share), found->rest_over_peak, found->rest_channel);
   if (found->rest_over_allowed > 1)
-    text +=
-        fmt::format(", {:.2g} times what is allowed: that is not all", found->rest_over_allowed);
+    text += fmt::format(", {:.3g} times what is allowed: other causes remain",
+                        found->rest_over_allowed);
   std::vector<std::string> same, others;
   for (const auto& p : found->parameters)
     same.insert(same.end(), p.look_same.begin(), p.look_same.end());
