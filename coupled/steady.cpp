@@ -1,10 +1,11 @@
 // Periodic motion as the fixed point of the map of an N-th of the block's turn.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "bentaxis/coupled/simulation.h"
+#include "bentaxis/numerics/dense.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
@@ -271,7 +272,7 @@ class Newton {
   std::vector<std::complex<double>> multipliers(const Point& p) {
     if (p.u.size() == 0) return {};
     if (!has_slopes_of(p)) find_slopes(p.u, true);
-    const Eigen::VectorXcd values = by_state_.eigenvalues();
+    const Eigen::VectorXcd values = numerics::eigenvalues(by_state_);
     std::vector<std::complex<double>> result(values.data(), values.data() + values.size());
     std::sort(result.begin(), result.end(),
               [](const auto& a, const auto& b) { return std::abs(a) > std::abs(b); });
@@ -295,10 +296,9 @@ class Newton {
            (tight_at_ - p.u).lpNorm<Eigen::Infinity>() <= kNearEnough;
   }
   Eigen::VectorXd step_from(Point& p) {
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-    solver.setThreshold(kNeutral);
-    solver.compute(Eigen::MatrixXd::Identity(p.u.size(), p.u.size()) - by_state_);
-    amplification_ = solver.pseudoInverse().rowwise().norm().maxCoeff();
+    const numerics::ShortestSolver solver(
+        Eigen::MatrixXd::Identity(p.u.size(), p.u.size()) - by_state_, kNeutral);
+    amplification_ = solver.pseudo_inverse().rowwise().norm().maxCoeff();
     Eigen::VectorXd step = solver.solve(p.residual);
     p.step = step.lpNorm<Eigen::Infinity>();
     p.error = p.step + kOfPeriod * amplification_ * integration_;

@@ -1,10 +1,10 @@
 #include "period_map.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "bentaxis/numerics/dense.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 
@@ -70,7 +70,7 @@ void search(PeriodMap& map, PeriodMap::Vector& z, double tolerance, PeriodMap::M
                              std::to_string(iterations) +
                              " Newton steps; pressures still change by a factor of up to exp(" +
                              number_text(best) + ") per period");
-    PeriodMap::Vector step = -jacobian.partialPivLu().solve(f);
+    PeriodMap::Vector step = -numerics::LinearSolver(jacobian).solve(f);
     if (!step.allFinite())
       throw ComputationError(
           "hydraulics: no periodic state found: no load results in this mean delivery pressure");

@@ -1,11 +1,12 @@
 #include "bentaxis/hydraulics/sensitivity.h"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
 
+#include "bentaxis/numerics/dense.h"
 #include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
@@ -190,8 +191,8 @@ std::vector<PressureRates> pressure_rates(const SteadyState& state,
   }
   residual.leftCols(states).topRows(states).diagonal().array() -= 1;
   if (network.load_sought()) residual.row(states) = by.row(size - 1);
-  const Matrix follow =
-      -residual.leftCols(unknowns).partialPivLu().solve(residual.rightCols(columns - unknowns));
+  const Matrix follow = -numerics::LinearSolver(residual.leftCols(unknowns))
+                             .solve(Matrix(residual.rightCols(columns - unknowns)));
   if (!follow.allFinite())
     throw ComputationError("hydraulics: the periodic state has no derivatives here");
 

@@ -1,6 +1,6 @@
 #include "bentaxis/hydraulics/steady_state.h"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bentaxis/hydraulics/accuracy_log.h"
+#include "bentaxis/numerics/dense.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
@@ -76,7 +77,7 @@ Vector first_guess(const Network& network, const std::optional<Start>& start, do
 struct Found {
   Vector z;
   Vector next;  // the last one corrected once more: stored energy returns more closely
-  Eigen::PartialPivLU<Matrix> chord;
+  numerics::LinearSolver chord;
   int iterations = 0;
 };
 
@@ -96,7 +97,7 @@ Found find(const Network& network, PeriodMap& map, const Vector& guess, bool lin
   settle(network, map, found.z, line_given);
   Matrix jacobian;
   search(map, found.z, std::max(kCoarse, tolerance), jacobian, found.iterations, alive);
-  found.chord.compute(jacobian);
+  found.chord = numerics::LinearSolver(jacobian);
   return found;
 }
 
@@ -138,7 +139,7 @@ void refine(const Network& network, PeriodMap& map, double tolerance, Found& fou
       // Slow: take the fine map's own derivatives.
       Matrix jacobian;
       search(map, found.z, tolerance, jacobian, found.iterations, alive);
-      found.chord.compute(jacobian);
+      found.chord = numerics::LinearSolver(jacobian);
       f = map.residual(found.z, tolerance);
       if (size_of(f) > 100 * map.noise() * tolerance)
         throw ComputationError("hydraulics: no periodic state found: pressures still change by " +

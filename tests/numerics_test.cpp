@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bentaxis/numerics/bisection.h"
+#include "bentaxis/numerics/dense.h"
 #include "bentaxis/numerics/object_pool.h"
 #include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/numerics/stiff_integrator.h"
@@ -184,6 +185,70 @@ TEST(StiffIntegrator, ThrowsOnWhatNoShorterStepAvoids) {
   } catch (const std::runtime_error& error) {
     EXPECT_STREQ(error.what(), "too far");
   }
+}
+
+Eigen::MatrixXd matrix_of(std::initializer_list<std::initializer_list<double>> rows) {
+  return Eigen::MatrixXd(rows);
+}
+
+TEST(Dense, SolvesWhatHasOneSolution) {
+  const Eigen::MatrixXd a = matrix_of({{0, 2, 1}, {4, -6, 0}, {-2, 7, 3}});
+  const Eigen::VectorXd x = Eigen::Vector3d(1, -2, 3);
+  const LinearSolver solver(a);
+  EXPECT_LT((solver.solve(Eigen::VectorXd(a * x)) - x).norm(), 1e-14);
+  const Eigen::MatrixXd both = matrix_of({{1, 5}, {-2, 0}, {3, -1}});
+  EXPECT_LT((solver.solve(Eigen::MatrixXd(a * both)) - both).norm(), 1e-13);
+  const Eigen::MatrixXd square = a.transpose() * a;
+  EXPECT_LT((SymmetricSolver(square).solve(Eigen::VectorXd(square * x)) - x).norm(), 1e-12);
+  EXPECT_FALSE(LinearSolver(matrix_of({{1, 2}, {2, 4}}))
+                   .solve(Eigen::VectorXd(Eigen::VectorXd::Unit(2, 0)))
+                   .allFinite());
+}
+
+// The line through three points: normal equations by hand give 7/6 and 1/2.
+TEST(Dense, FitsByLeastSquares) {
+  const Eigen::MatrixXd a = matrix_of({{1, 0}, {1, 1}, {1, 2}});
+  const Eigen::VectorXd b = Eigen::Vector3d(1, 2, 2);
+  const LeastSquaresSolver solver(a);
+  EXPECT_EQ(solver.rank(), 2);
+  EXPECT_LT((solver.solve(b) - Eigen::VectorXd(Eigen::Vector2d(7.0 / 6, 0.5))).norm(), 1e-14);
+  const Eigen::MatrixXd span = solver.span(), root = solver.inverse_root();
+  ASSERT_EQ(span.cols(), 2);
+  EXPECT_LT((span.transpose() * span - Eigen::MatrixXd::Identity(2, 2)).norm(), 1e-14);
+  EXPECT_LT((a - span * (span.transpose() * a)).norm(), 1e-14);
+  EXPECT_LT(
+      (root * root.transpose() * (a.transpose() * a) - Eigen::MatrixXd::Identity(2, 2)).norm(),
+      1e-13);
+}
+
+TEST(Dense, TakesTheShortestOfManySolutions) {
+  const Eigen::MatrixXd a = matrix_of({{1, 1}, {2, 2}});
+  const Eigen::VectorXd b = Eigen::Vector2d(2, 4);
+  const ShortestSolver solver(a, 1e-10);
+  EXPECT_LT((solver.solve(b) - Eigen::VectorXd::Ones(2)).norm(), 1e-14);
+  EXPECT_LT((solver.pseudo_inverse() - matrix_of({{0.1, 0.2}, {0.1, 0.2}})).norm(), 1e-15);
+  // What is below the threshold counts as dependent, above it as independent.
+  const Eigen::MatrixXd almost = matrix_of({{1, 1}, {1, 1 + 1e-6}});
+  EXPECT_LT(ShortestSolver(almost, 1e-3).pseudo_inverse().norm(), 1);
+  EXPECT_GT(ShortestSolver(almost, 1e-9).pseudo_inverse().norm(), 1e5);
+  EXPECT_EQ(LeastSquaresSolver(almost, 1e-3).rank(), 1);
+  EXPECT_EQ(LeastSquaresSolver(almost, 1e-9).rank(), 2);
+}
+
+TEST(Dense, FindsEigenvalues) {
+  const Eigen::VectorXcd turning = eigenvalues(matrix_of({{1, -2}, {2, 1}}));
+  for (const auto& value : turning) {
+    EXPECT_NEAR(value.real(), 1, 1e-14);
+    EXPECT_NEAR(std::abs(value.imag()), 2, 1e-14);
+  }
+  EXPECT_LT(std::abs(turning.sum() - 2.0), 1e-14);
+  const Eigen::MatrixXd symmetric = matrix_of({{2, 1}, {1, 2}});
+  EXPECT_LT((symmetric_eigenvalues(symmetric) - Eigen::VectorXd(Eigen::Vector2d(1, 3))).norm(),
+            1e-14);
+  const SymmetricEigen found = symmetric_eigen(symmetric);
+  EXPECT_LT((symmetric * found.vectors - found.vectors * found.values.asDiagonal()).norm(), 1e-14);
+  EXPECT_NEAR(found.vectors.col(1).norm(), 1, 1e-14);
+  EXPECT_LT(found.values[0], found.values[1]);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include "bentaxis/designs/explain.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -11,6 +11,7 @@
 #include "bentaxis/designs/sensitivity.h"
 #include "bentaxis/designs/variable.h"
 #include "bentaxis/files/case_file.h"
+#include "bentaxis/numerics/dense.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/failed_point.h"
@@ -245,10 +246,10 @@ class Search {
       Eigen::VectorXd scale = slopes.colwise().norm();
       for (double& size : scale)
         if (!(size > 0)) size = 1;
-      Eigen::VectorXd change = (slopes * scale.cwiseInverse().asDiagonal())
-                                   .colPivHouseholderQr()
-                                   .solve(wanted_ - now)
-                                   .cwiseQuotient(scale);
+      Eigen::VectorXd change =
+          numerics::LeastSquaresSolver(slopes * scale.cwiseInverse().asDiagonal())
+              .solve(wanted_ - now)
+              .cwiseQuotient(scale);
       bool lower = false;
       for (int half = 0; half <= kHalvings && !lower; ++half, change /= 2) {
         const auto there = results(family, x + change);

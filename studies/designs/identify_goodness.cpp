@@ -1,5 +1,5 @@
 // Whether the data refute a fit, what they refute it by, and what would improve it.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
@@ -7,6 +7,7 @@
 
 #include "bentaxis/designs/identify.h"
 #include "bentaxis/designs/sensitivity.h"
+#include "bentaxis/numerics/dense.h"
 #include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/failed_point.h"
@@ -126,8 +127,7 @@ DataModel with_further(const DataModel& model, const Variable& variable, double 
 // all of them.
 Matrix reproduced_by(const Matrix& derivatives) {
   if (derivatives.cols() == 0) return derivatives;
-  const Eigen::ColPivHouseholderQR<Matrix> qr(derivatives);
-  return qr.householderQ() * Matrix::Identity(derivatives.rows(), qr.rank());
+  return numerics::LeastSquaresSolver(derivatives).span();
 }
 
 std::optional<Promise> promise_of(const DataModel& model, const LeastSquaresFit& fit,
@@ -232,9 +232,8 @@ GoodnessOfFit goodness_of(const DataModel& model, const LeastSquaresFit& fit) {
       ++goodness.residuals;
   }
   if (a.cols() > 0) {
-    const Eigen::SelfAdjointEigenSolver<Matrix> solver(a.transpose() * a, Eigen::EigenvaluesOnly);
-    goodness.fitted_directions =
-        static_cast<std::size_t>((solver.eigenvalues().array() > kWeakest).count());
+    const Eigen::VectorXd information = numerics::symmetric_eigenvalues(a.transpose() * a);
+    goodness.fitted_directions = static_cast<std::size_t>((information.array() > kWeakest).count());
     goodness.fitted_directions = std::min(goodness.fitted_directions, goodness.residuals);
   }
   if (goodness.degrees_of_freedom() > 0)

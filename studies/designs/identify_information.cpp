@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "bentaxis/designs/identify.h"
+#include "bentaxis/numerics/dense.h"
 
 namespace bentaxis::designs {
 namespace {
@@ -64,11 +65,11 @@ class Words {
     Matrix rest = without(open_, alone_);
     for (Index i = 0; i < n; ++i)
       for (Index j = i + 1; j < n; ++j) {
-        Eigen::Matrix2d block;
+        Matrix block(2, 2);
         block << rest(i, i), rest(i, j), rest(j, i), rest(j, j);
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(block);
-        if (solver.eigenvalues()[1] < kPair) continue;
-        const Eigen::Vector2d way = solver.eigenvectors().col(1);
+        const numerics::SymmetricEigen pair = numerics::symmetric_eigen(block);
+        if (pair.values[1] < kPair) continue;
+        const Eigen::VectorXd way = pair.vectors.col(1);
         const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
         lines_.push_back(pair_words(unknowns_[a], unknowns_[b], way[0] * spread_[a],
                                     way[1] * spread_[b], x_[a], x_[b]));
@@ -138,11 +139,11 @@ Information information_of(const DataModel& model, std::span<const double> x,
   for (std::size_t r = 0; r < rows; ++r)
     for (std::size_t i = 0; i < n; ++i)
       a(static_cast<Index>(r), static_cast<Index>(i)) = jacobian[r * n + i] * information.spread[i];
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(a.transpose() * a);
+  const numerics::SymmetricEigen eigen = numerics::symmetric_eigen(a.transpose() * a);
   Matrix after = Matrix::Zero(static_cast<Index>(n), static_cast<Index>(n)), open = after;
   for (Index k = static_cast<Index>(n) - 1; k >= 0; --k) {
-    const double information_along = std::max(solver.eigenvalues()[k], 0.0);
-    const Eigen::VectorXd way = solver.eigenvectors().col(k);
+    const double information_along = std::max(eigen.values[k], 0.0);
+    const Eigen::VectorXd way = eigen.vectors.col(k);
     after += way * way.transpose() / (1 + information_along);
     // Open is what the data make less than twice as narrow as it was.
     if (information_along < 3) open += way * way.transpose();

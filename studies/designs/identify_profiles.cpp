@@ -1,8 +1,9 @@
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "bentaxis/designs/identify.h"
+#include "bentaxis/numerics/dense.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/reporting.h"
 #include "row_major.h"
@@ -175,7 +176,7 @@ std::vector<LeftOut> leave_one_out(const DataModel& model, const LeastSquaresFit
     if (!derivatives_of(number, refit.x, slopes)) return;
     const Eigen::Map<const RowMajor> jacobian(refit.jacobian.data(),
                                               static_cast<Eigen::Index>(refit.residuals.size()), n);
-    const Eigen::LDLT<Eigen::MatrixXd> information(jacobian.transpose() * jacobian);
+    const numerics::SymmetricSolver information(jacobian.transpose() * jacobian);
     for (std::size_t k = 0; k < datum.size(); ++k) {
       const Eigen::Map<const Eigen::VectorXd> slope(slopes.data() + k * model.size(), n);
       const double deviation = std::hypot(

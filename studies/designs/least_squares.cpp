@@ -1,12 +1,13 @@
 #include "bentaxis/designs/least_squares.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <mutex>
 #include <optional>
 
+#include "bentaxis/numerics/dense.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/reporting.h"
 #include "row_major.h"
@@ -103,15 +104,10 @@ std::vector<double> LeastSquaresFit::covariance() const {
   Eigen::VectorXd lengths = j.colwise().norm();  // so that units of parameters do not count
   for (double& length : lengths) length = length > 0 ? length : 1;
   j = j * lengths.cwiseInverse().asDiagonal();
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-  qr.setThreshold(kRank);
-  qr.compute(j);
+  const numerics::LeastSquaresSolver qr(j, kRank);
   if (qr.rank() < n)
     throw ComputationError("least squares: the data do not determine all parameters");
-  const Eigen::MatrixXd r =
-      qr.matrixR().topLeftCorner(n, n).template triangularView<Eigen::Upper>();
-  const Eigen::MatrixXd half =
-      lengths.cwiseInverse().asDiagonal() * (qr.colsPermutation() * r.inverse());
+  const Eigen::MatrixXd half = lengths.cwiseInverse().asDiagonal() * qr.inverse_root();
   std::vector<double> result(x.size() * x.size());
   Eigen::Map<RowMajor>(result.data(), n, n) = half * half.transpose();
   return result;
@@ -157,10 +153,7 @@ void finish(const LeastSquaresProblem& problem, const std::vector<double>& units
                                    (fit.x[i] >= problem.high[i] && slope[column] <= 0));
       free.col(column) *= held ? 0 : units[i];
     }
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> qr;
-    qr.setThreshold(kRank);
-    qr.compute(free);
-    const Eigen::VectorXd step = qr.solve(-residuals);
+    const Eigen::VectorXd step = numerics::ShortestSolver(free, kRank).solve(-residuals);
     LeastSquaresFit next = fit;
     for (std::size_t i = 0; i < n; ++i) {
       next.x[i] += step[static_cast<Eigen::Index>(i)] * units[i];

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,6 +10,7 @@
 
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/files/csv_rows.h"
+#include "bentaxis/numerics/dense.h"
 #include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -31,8 +32,8 @@ Eigen::VectorXd fit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y,
   if (columns.rows() < columns.cols()) refuse();
   // Columns are scaled to one size, so that the rank does not depend on units.
   const Eigen::VectorXd size = columns.colwise().norm();
-  const auto solver =
-      (columns * size.cwiseMax(1e-300).cwiseInverse().asDiagonal()).eval().colPivHouseholderQr();
+  const numerics::LeastSquaresSolver solver(columns *
+                                            size.cwiseMax(1e-300).cwiseInverse().asDiagonal());
   if (solver.rank() < columns.cols()) refuse();
   return (solver.solve(y).array() / size.array()).matrix();
 }
