@@ -3,9 +3,11 @@
 # engines of others knows one, or if report/
 # computes: documents take finished results. That a target finds
 # no headers but those of what it links is the build's doing (scripts/cmake/BentaxisTarget.cmake).
-# usage: independence_test.sh SOURCE_DIR ANALYTIC_LIBRARY MULTIBODY_LIBRARY DOCUMENTS_LIBRARY ENGINES_LIBRARY
+# usage: independence_test.sh SOURCE_DIR ANALYTIC_LIBRARY[,..] MULTIBODY_LIBRARY DOCUMENTS_LIBRARY[,..] ENGINES_LIBRARY
 set -euo pipefail
-source_dir=$1 analytic=$2 multibody=$3 documents=$4 engines=$5
+source_dir=$1 multibody=$3 engines=$5
+IFS=, read -ra analytic <<< "$2"
+IFS=, read -ra documents <<< "$4"
 status=0
 
 forbid_include() {  # folder, forbidden room
@@ -52,8 +54,12 @@ for room in analytic multibody; do
 done
 forbid_symbol "$engines" '(analytic|multibody)' || status=1
 forbid_computing_headers "$source_dir/report" || status=1
-forbid_computing_calls "$documents" || status=1
-forbid_symbol "$analytic" multibody || status=1
+for library in "${documents[@]}"; do
+  forbid_computing_calls "$library" || status=1
+done
+for library in "${analytic[@]}"; do
+  forbid_symbol "$library" multibody || status=1
+done
 forbid_symbol "$multibody" analytic || status=1
 
 # The check itself must be able to fail.

@@ -1,8 +1,5 @@
 #include "command_list.h"
 
-#include "bentaxis/designs/least_squares.h"
-#include "bentaxis/designs/search.h"
-
 namespace bentaxis::cli {
 namespace {
 
@@ -85,16 +82,6 @@ void add_former_names(ProgramParser& program) {
   program.renamed("tradeoff", "--samples", "--angles");
 }
 
-// What commands need that a build may lack.
-void say_what_is_lacking(const std::vector<Command>& commands) {
-  for (const Command& command : commands) {
-    CommandParser parser = command.parser;
-    const std::string name = parser.info().name;
-    if (name == "identify" && designs::least_squares_library().empty()) parser.lacks("Ceres");
-    if (name == "optimise" && designs::search_libraries().empty()) parser.lacks("pagmo and NLopt");
-  }
-}
-
 }  // namespace
 
 std::vector<Command> add_commands(ProgramParser& program) {
@@ -104,7 +91,6 @@ std::vector<Command> add_commands(ProgramParser& program) {
       commands.push_back(listed.add(program.root()));
       commands.back().parser.place(group.title, listed.example);
     }
-  say_what_is_lacking(commands);
   add_former_names(program);
   return commands;
 }

@@ -229,6 +229,8 @@ void CommandParser::lacks(const std::string& what) {
 
 void CommandParser::require_subcommand() { app_->require_subcommand(1); }
 
+void CommandParser::accept_anything() { app_->allow_extras(); }
+
 namespace {
 
 CLI::Option* number(CLI::Option* option) {

@@ -84,6 +84,8 @@ class CommandParser {
   /// Says in the list of commands that it cannot run in this build. @param what  that it lacks
   void lacks(const std::string& what);
   void require_subcommand();
+  /// Any arguments and options may follow, whatever they are.
+  void accept_anything();
 
   Option option(const std::string& name, int& value, const std::string& what);
   Option option(const std::string& name, double& value, const std::string& what);

@@ -6,9 +6,6 @@
 #include <memory>
 #include <optional>
 
-#include "bentaxis/designs/explain.h"
-#include "bentaxis/designs/validation_section.h"
-#include "bentaxis/engines/run.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/study/assumptions.h"
@@ -17,6 +14,7 @@
 #include "bentaxis/study/engine_comparison.h"
 #include "bentaxis/study/timing.h"
 #include "commands.h"
+#include "compare_parts.h"
 #include "console.h"
 #include "data_folder.h"
 #include "options.h"
@@ -92,7 +90,7 @@ int judge_by_engines(const Case& given, const study::EngineOptions& options,
                      const ComputationError& refusal, ReportFolders& folders) {
   const study::PreparedCase ready = study::prepare(given, progress_of);
   const ResultTable analytic = study::run_turn(ready, study::Model::analytic, progress_of);
-  const study::EngineComparison engines = study::compare_engines(
+  const study::EngineComparison engines = options.calls->compare(
       ready, options, analytic, nullptr, study::kDrivenTolerance, progress_of);
   report::Document document =
       study::engine_document(engines, refusal.what(), versions(),
@@ -109,6 +107,9 @@ int judge_by_engines(const Case& given, const study::EngineOptions& options,
 int compare(const CompareOptions& options) {
   options.choice.refuse_without_effect(true);
   refuse_engine_options_without_effect(options);
+  if (!options.engines.names.empty()) require_whole_program("--engine");
+  if (!options.with.empty()) require_whole_program("--with");
+  if (options.uncertainty > 0) require_whole_program("--uncertainty");
   const auto names_transfer = [](const std::vector<std::string>& assumptions) {
     return std::any_of(assumptions.begin(), assumptions.end(), is_transfer);
   };
@@ -133,7 +134,7 @@ int compare(const CompareOptions& options) {
   if (second) study::check_same_run(first, *second);
   const Case given = first;
   const auto samples = static_cast<std::size_t>(options.uncertainty);
-  if (samples > 0) designs::check_sampling(given, samples);
+  if (samples > 0) check_sampling(given, samples);
   ReportFolders folders(options.place);
   if (folders.has_figures()) study::require_memory(given, study::Kept::drawn, options.choice.way);
 
@@ -165,7 +166,7 @@ int compare(const CompareOptions& options) {
     return judge_by_engines(given, *how.engines, refusal, folders);
   }
   study::ComparisonResult& result = *compared;
-  if (result.with) designs::explain(*result.with, given, progress_of);
+  if (result.with) explain_differences(*result.with, given, progress_of);
 
   const auto refuse = [&](const study::PreparedCase& ready) {
     if (ready.hydraulics)
@@ -180,10 +181,9 @@ int compare(const CompareOptions& options) {
       study::comparison_document(result, versions(), study::describe(result, progress_of));
   std::string known;  // how well
   if (samples > 0) {
-    const designs::Validation validation = designs::validation(given, result, samples, progress_of);
-    designs::add_validation(document, validation);
-    curves.emplace_back("bands.csv", designs::bands_csv(validation.uncertainty));
-    known = designs::validation_text(validation) + "\n";
+    KnownHowWell how_well = add_uncertainty(document, given, result, samples, progress_of);
+    curves.push_back(std::move(how_well.bands));
+    known = how_well.text + "\n";
   }
   const report::Rows rows = folders.has_figures() ? report::Rows::all : report::Rows::shown;
   const auto paths =
@@ -234,7 +234,7 @@ Command add_compare_command(CommandParser program) {
               "run engines of others too: exit status 1 where one differs by more than its "
               "tolerance, 3 where one cannot be run")
       .list()
-      .completed_with(engines::known_engines())
+      .completed_with(engine_names())
       .text("NAME[,NAME..]");
   command.choice("--engine-way", options->engines.way, {"given", "integrated"},
                  "given: inverse dynamics at given motion; integrated: by the engine's own "

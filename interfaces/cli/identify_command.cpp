@@ -60,6 +60,7 @@ Command add_identify_command(CommandParser program) {
   auto options = std::make_shared<IdentifyCommandOptions>();
   CommandParser command = program.subcommand(
       "identify", "Determine parameters from printed numbers, windows and records, and how well");
+  if (designs::least_squares_library().empty()) command.lacks("Ceres");
   add_case(command, options->the_case);
   add_report(command, options->place,
              "report.html, report.json, identified.toml, unknowns.csv and bands.csv");

@@ -132,6 +132,7 @@ Command add_optimise_command(CommandParser program) {
   auto options = std::make_shared<OptimiseOptions>();
   CommandParser command = program.subcommand(
       "optimise", "Find the best designs: objectives, constraints, any parameters");
+  if (designs::search_libraries().empty()) command.lacks("pagmo and NLopt");
   add_case(command, options->the_case);
   add_report(command, options->place,
              "report.html, report.json, front.csv, evaluations.csv and chosen_N.toml");

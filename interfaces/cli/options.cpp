@@ -5,12 +5,12 @@
 #include <cmath>
 #include <cstdio>
 
-#include "bentaxis/designs/spaced_values.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/registry.h"
 #include "bentaxis/study/plausibility.h"
+#include "bentaxis/study/spaced_values.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -92,7 +92,7 @@ std::vector<double> values_in(const std::string& name, const std::string& text,
                               const std::string& unit, double least) {
   constexpr int kMost = 1000;
   if (text.find(',') == std::string::npos)
-    return designs::spaced_values(name, text, unit, least, kMost);
+    return study::spaced_values(name, text, unit, least, kMost);
   std::vector<double> values;
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t end = std::min(text.find(',', at), text.size());

@@ -1,7 +1,6 @@
 #include <memory>
 #include <optional>
 
-#include "bentaxis/designs/spaced_values.h"
 #include "bentaxis/designs/timing_advice_section.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/csv.h"
@@ -12,6 +11,7 @@
 #include "bentaxis/study/displacement_section.h"
 #include "bentaxis/study/operating_points.h"
 #include "bentaxis/study/pressure_document.h"
+#include "bentaxis/study/spaced_values.h"
 #include "commands.h"
 #include "console.h"
 #include "options.h"
@@ -62,11 +62,11 @@ std::optional<DisplacementTest> displacement_test(const PressureOptions& options
   DisplacementTest test = {study::usual_test_speeds(the_case),
                            study::usual_test_pressures(the_case)};
   if (!options.test_speeds.empty())
-    test.speeds = designs::spaced_values("--test-speeds", options.test_speeds, "rpm", kMinSpeed,
-                                         kMaxTestPoints);
+    test.speeds = study::spaced_values("--test-speeds", options.test_speeds, "rpm", kMinSpeed,
+                                       kMaxTestPoints);
   if (!options.test_pressures.empty())
-    test.pressures = designs::spaced_values("--test-pressures", options.test_pressures, "bar", 0,
-                                            kMaxTestPoints);
+    test.pressures =
+        study::spaced_values("--test-pressures", options.test_pressures, "bar", 0, kMaxTestPoints);
   if (test.pressures.size() < 2)
     throw InputError("--test-pressures " + options.test_pressures +
                      ": must be two pressures at least");

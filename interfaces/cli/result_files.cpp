@@ -6,16 +6,6 @@
 #include "bentaxis/files/csv.h"
 
 namespace bentaxis::cli {
-namespace {
-
-// Of tables that are there until the files are written.
-template <class Table>
-TextFile csv_file(std::string name, const Table& table) {
-  return {std::move(name), [&table](const TextSink& write) { write_csv(table, write); }};
-}
-
-}  // namespace
-
 std::vector<TextFile> comparison_files(const study::ComparisonResult& result) {
   const auto chosen = [&](const char* name, const ResultTable& table) {
     return TextFile(name, [&](const TextSink& write) {
@@ -44,25 +34,6 @@ std::vector<TextFile> engine_files(const study::EngineComparison& engines) {
   std::vector<TextFile> curves;
   for (const study::EngineRun& run : engines.runs)
     if (run.failure.empty()) curves.push_back(csv_file(run.name + ".csv", run.table));
-  return curves;
-}
-
-std::vector<TextFile> simulation_files(const study::SimulationResult& result) {
-  std::vector<TextFile> curves;
-  for (const auto& [name, run] :
-       {std::pair{"analytic", &result.analytic}, std::pair{"multibody", &result.multibody}}) {
-    if (!*run) continue;
-    const Trajectory& of = **run;
-    curves.push_back(csv_file(std::string("simulation_") + name + ".csv", of.table));
-    if (!of.teeth.empty())
-      curves.emplace_back(std::string("teeth_") + name + ".csv",
-                          to_csv(teeth_table_of(of, result.ready.the_case.pump.gear)));
-    if (of.oil)
-      curves.emplace_back(std::string("oil_") + name + ".csv",
-                          [&of](const TextSink& write) { write_oil_csv(of, write); });
-    if (const auto& told = result.exchanged[run == &result.multibody]; told)
-      curves.emplace_back(std::string("unit_") + name + ".csv", told->csv());
-  }
   return curves;
 }
 

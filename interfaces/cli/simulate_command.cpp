@@ -8,7 +8,7 @@
 #include "console.h"
 #include "options.h"
 #include "report_files.h"
-#include "result_files.h"
+#include "simulation_files.h"
 #include "unit_option.h"
 #include "versions.h"
 

@@ -5,10 +5,6 @@
 #include <Eigen/Core>
 #include <fstream>
 
-#include "bentaxis/designs/least_squares.h"
-#include "bentaxis/designs/propagation.h"
-#include "bentaxis/designs/search.h"
-#include "bentaxis/designs/sweep_tables.h"
 #include "bentaxis/hydraulics/versions.h"
 #include "bentaxis/multibody/versions.h"
 
@@ -25,8 +21,8 @@ std::string processor() {
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> shared_versions() {
-  return {
+Lines shared_versions(const Lines& further) {
+  Lines all = {
       {"bentaxis", BENTAXIS_VERSION},
       {"compiler",
 #ifdef __clang__
@@ -39,13 +35,10 @@ std::vector<std::pair<std::string, std::string>> shared_versions() {
       {"Eigen", std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) +
                     "." + std::to_string(EIGEN_MINOR_VERSION)},
       {"Simbody", multibody::simbody_version()},
-      {"BLAS", multibody::blas_library()},
-      {"HDF5", designs::hdf5_version()},
-      {"OpenTURNS", designs::openturns_version()},
-      {"Ceres",
-       designs::least_squares_library().empty() ? "none" : designs::least_squares_library()},
-      {"search", designs::search_libraries().empty() ? "none" : designs::search_libraries()},
-      {"processor", processor()}};
+      {"BLAS", multibody::blas_library()}};
+  all.insert(all.end(), further.begin(), further.end());
+  all.emplace_back("processor", processor());
+  return all;
 }
 
 }  // namespace bentaxis::cli

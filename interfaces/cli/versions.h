@@ -2,15 +2,15 @@
 #pragma once
 
 #include <string>
-#include <utility>
-#include <vector>
+
+#include "bentaxis/results/remarks.h"
 
 namespace bentaxis::cli {
 
 /// Name and version of program, compiler, libraries, processor; for reports.
-std::vector<std::pair<std::string, std::string>> versions();
-/// The same without MPI, which the program alone is linked with, not who shares its reports.
-std::vector<std::pair<std::string, std::string>> shared_versions();
+Lines versions();
+/// The same of what every program with these reports has. @param further  libraries of this one
+Lines shared_versions(const Lines& further = {});
 
 /// What the build has of them, in a line; "none" behind what it lacks.
 std::string optional_parts();

@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 
+#include "bentaxis/designs/versions.h"
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/error.h"
 #include "data_folder.h"
@@ -31,7 +32,7 @@ fs::path module_file() {
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> versions() {
-  auto all = cli::shared_versions();
+  auto all = cli::shared_versions(designs::library_versions());
   all.insert(all.end() - 1, {"Python", PY_VERSION});
   return all;
 }

@@ -10,7 +10,7 @@
 #include "choices.h"
 #include "python_case.h"
 #include "report.h"
-#include "result_files.h"
+#include "simulation_files.h"
 #include "table.h"
 
 namespace bentaxis::python {

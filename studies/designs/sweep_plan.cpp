@@ -4,12 +4,12 @@
 #include <limits>
 #include <utility>
 
-#include "bentaxis/designs/spaced_values.h"
 #include "bentaxis/designs/sweep.h"
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/words.h"
+#include "bentaxis/study/spaced_values.h"
 
 namespace bentaxis::designs {
 namespace {
@@ -40,7 +40,7 @@ std::optional<std::string> in_log(const std::string& text) {
 
 // FROM:TO:#N in equal ratios.
 std::vector<double> log_levels(const std::string& what, const std::string& text) {
-  std::vector<double> levels = spaced_values(what, text, "", kMaxValues);
+  std::vector<double> levels = study::spaced_values(what, text, "", kMaxValues);
   if (levels.size() < 2 || text.find('#') == std::string::npos || !(levels.front() > 0))
     throw InputError(what + " log(" + text +
                      "): must be log(FROM:TO:#N) with 0 < FROM < TO, N > 1");
@@ -126,7 +126,7 @@ std::vector<double> levels_of(const std::string& text, const Variable& variable)
     if (const auto inner = in_log(part))
       some = log_levels(variable.name(), *inner);
     else if (part.find(':') != std::string::npos && variable.words().empty())
-      some = spaced_values(variable.name(), part, variable.unit(), kMaxValues);
+      some = study::spaced_values(variable.name(), part, variable.unit(), kMaxValues);
     else
       some = {variable.value_of(part)};
     levels.insert(levels.end(), some.begin(), some.end());

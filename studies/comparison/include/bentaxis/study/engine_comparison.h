@@ -30,6 +30,19 @@ double engine_tolerance(const std::string& engine, EngineWay way = EngineWay::gi
 
 inline constexpr int kEngineSteps = 1440;  ///< per turn, where nothing else is asked for
 
+struct EngineOptions;
+struct EngineComparison;
+
+/// What runs engines. Options bring it along: who compares models can be built without any engine.
+struct EngineCalls {
+  void (*check)(const EngineOptions& options);  ///< check_engines
+  EngineComparison (*compare)(const PreparedCase& ready, const EngineOptions& options,
+                              const ResultTable& analytic, const ResultTable* multibody,
+                              double model_tolerance,
+                              const PartProgress& progress_of);  ///< compare_engines
+};
+extern const EngineCalls kEngineCalls;
+
 struct EngineOptions {
   std::vector<std::string> names;  ///< of engines; empty: none
   EngineWay way = EngineWay::given;
@@ -42,6 +55,7 @@ struct EngineOptions {
   std::vector<std::filesystem::path> curves;
   /// Changes what engines are given: for negative controls.
   std::function<void(engines::Mechanism&)> change = {};
+  const EngineCalls* calls = &kEngineCalls;
 };
 
 /// One engine's results, or why there are none.

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace bentaxis::designs {
+namespace bentaxis::study {
 
 /// One number, FROM:TO:STEP, or `FROM:TO:#N` for N of them, both ends among them.
 /// @param what   whose value it is, for messages: "--speeds"
@@ -20,4 +20,4 @@ inline std::vector<double> spaced_values(const std::string& what, const std::str
   return spaced_values(what, text, unit, -std::numeric_limits<double>::infinity(), most);
 }
 
-}  // namespace bentaxis::designs
+}  // namespace bentaxis::study

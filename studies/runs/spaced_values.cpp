@@ -1,4 +1,4 @@
-#include "bentaxis/designs/spaced_values.h"
+#include "bentaxis/study/spaced_values.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 
-namespace bentaxis::designs {
+namespace bentaxis::study {
 
 std::vector<double> spaced_values(const std::string& what, const std::string& text,
                                   const std::string& unit, double least, int most) {
@@ -57,4 +57,4 @@ std::vector<double> spaced_values(const std::string& what, const std::string& te
   return values;
 }
 
-}  // namespace bentaxis::designs
+}  // namespace bentaxis::study

@@ -97,7 +97,7 @@ class Maker {
     warn();
     if (!r.options.with.empty()) hold_to_reference();
     if (r.options.engines)
-      r.engines = std::make_shared<EngineComparison>(compare_engines(
+      r.engines = std::make_shared<EngineComparison>(r.options.engines->calls->compare(
           r.first, *r.options.engines, r.analytic, &r.multibody, r.tolerance, progress_of_));
     return std::move(result_);
   }
@@ -786,7 +786,7 @@ ComparisonResult compare_models(Case analytic_case, std::optional<Case> multibod
                                 const ComparisonOptions& options, const PartProgress& progress_of) {
   if (!options.with.empty()) reference_in(options.with);  // refused before anything is computed
   if (multibody_case) check_same_run(analytic_case, *multibody_case);
-  if (options.engines) check_engines(*options.engines);
+  if (options.engines) options.engines->calls->check(*options.engines);
   if (options.engines && options.way != Way::driven)
     throw InputError(
         "--engine: must be left out beside --way integrated: engines are compared with driven "
