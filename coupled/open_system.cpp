@@ -10,7 +10,7 @@ namespace {
 
 // An edge is passed where the block is beyond it by this, rad: what lies behind an event has then
 // begun.
-constexpr double kBeyond = 1e-10;
+constexpr double kPastEdge = 1e-10;
 constexpr double kAngle = 0.1;  // rad, over which pressures change
 
 struct MotionName {
@@ -159,8 +159,8 @@ void OpenSystem::indicator_values(std::vector<double>& values) const {
   values.clear();
   if (!edges_->none()) {
     const double angle = block().angle;
-    values.push_back(edges_->to() + kBeyond - angle);
-    values.push_back(angle - (edges_->from() - kBeyond));
+    values.push_back(edges_->to() + kPastEdge - angle);
+    values.push_back(angle - (edges_->from() - kPastEdge));
   }
   for (const int contact : contacts_)
     values.push_back(mechanics_.approach(time_, state_.motion, contact));

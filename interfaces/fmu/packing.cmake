@@ -8,6 +8,8 @@ target_link_libraries(bentaxis_fmu PUBLIC bentaxis::pump
     pugixml::pugixml zip)
 target_compile_definitions(bentaxis_fmu PRIVATE BENTAXIS_VERSION="${PROJECT_VERSION}")
 bentaxis_compile_fast(bentaxis_fmu)
+bentaxis_join_sources(bentaxis_fmu 5)
+set_source_files_properties(description_fmi3.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)  # it has the names of description_fmi2.cpp
 
 # Libraries for further platforms, where scripts/build_fmu_platforms has built them.
 install(DIRECTORY ${PROJECT_BINARY_DIR}/modules/fmu DESTINATION ${CMAKE_INSTALL_LIBDIR}/bentaxis OPTIONAL)

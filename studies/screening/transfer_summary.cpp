@@ -9,6 +9,7 @@
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/channels.h"
+#include "same_peak.h"
 
 namespace bentaxis::study {
 namespace {
@@ -16,7 +17,6 @@ namespace {
 // A piston carries more than another where its wall force exceeds that one's by this share:
 // opposite pistons of an even number may share to round-off.
 constexpr double kSameForce = 1e-6;
-constexpr double kSamePeak = 1e-9;  // of peaks that a turn repeats the first counts
 constexpr std::size_t kNamedSectors = 4;
 constexpr int kPlayAngles = 720;
 

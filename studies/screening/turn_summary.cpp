@@ -9,13 +9,11 @@
 
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/results/samples.h"
+#include "same_peak.h"
 
 namespace bentaxis::study {
 namespace {
 
-// What is larger by no more than this is the same peak, at the next piston or a part of a turn
-// later.
-constexpr double kSamePeak = 1e-9;
 constexpr std::size_t kNamed = 4;  // forces in a sentence
 
 bool exceeds(double value, double peak) {
