@@ -218,12 +218,12 @@ void PublishedSummary::count(const PublishedRow& row) {
   (row.number.predicted() ? predicted_inside : other_inside) += inside;
 }
 
-std::string PublishedSummary::text() const {
+std::string PublishedSummary::text(const std::string& where) const {
   return fmt::format(
-      "Only predicted rows are validation: {} of {} can be compared in this case, {} of them "
+      "Only predicted rows are validation: {} of {} can be compared {}, {} of them "
       "inside. {} further rows were used to infer the geometry or calibrated ({} inside): their "
       "agreement is no evidence.",
-      predicted_comparable, predicted, predicted_inside, other_comparable, other_inside);
+      predicted_comparable, predicted, where, predicted_inside, other_comparable, other_inside);
 }
 
 std::optional<PublishedValue> value_of(const PublishedNumber& n, const PublishedRun& run) {

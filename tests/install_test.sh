@@ -20,6 +20,11 @@ if cmake -S "$source_dir/tests/install/components" -B "$scratch/unknown" -DCMAKE
   exit 1
 fi
 grep -q 'no component "analitic": there are pump' <(tr -s '\n ' ' ' < "$scratch/log") || { cat "$scratch/log"; exit 1; }
+# The document names every component.
+named=$(sed -n '/^Components:/,/^$/p' "$source_dir/docs/install.md")
+for component in $(sed -n 's/^set(bentaxis_rooms \(.*\))$/\1/p' "$build/bentaxisConfig.cmake" | tr ';' ' '); do
+  grep -qF "\`$component\`" <<< "$named" || { echo "docs/install.md: no component $component"; exit 1; }
+done
 cd "$scratch"
 LD_DEBUG=files LD_DEBUG_OUTPUT=$scratch/loaded \
   "$scratch/build/uses_bentaxis" "$source_dir/cases/bap63_rated.toml" "$source_dir/cases/bap63_rated_hydraulic.toml"

@@ -369,7 +369,8 @@ bool ProgramParser::parse(int argc, char** argv) {
     app_->exit(answered);
     return false;
   } catch (const CLI::ParseError& error) {
-    throw InputError(words_for(*app_, error) + " (see bentaxis --help)");
+    throw InputError(words_for(*app_, error) + " (see " + app_->get_name() +
+                     (name.empty() ? "" : " " + name) + " --help)");
   }
 }
 

@@ -30,6 +30,13 @@ std::optional<fs::path> shipped_with_program(const std::string& name) {
 
 }  // namespace
 
+std::string document(const std::string& name) {
+  std::error_code error;
+  const auto folder = shipped_folder("docs", fs::read_symlink("/proc/self/exe", error),
+                                     BENTAXIS_DOCUMENTS_FROM_BINARY);
+  return (folder.value_or("docs") / name).string();
+}
+
 std::optional<fs::path> shipped_reference_data() { return shipped_with_program("reference_data"); }
 
 std::optional<fs::path> shipped_cases() { return shipped_with_program("cases"); }

@@ -12,6 +12,8 @@ namespace bentaxis::cli {
 std::optional<std::filesystem::path> shipped_reference_data();
 /// The folder cases, likewise.
 std::optional<std::filesystem::path> shipped_cases();
+/// A page of the documentation, as a path where it is there: docs/NAME otherwise.
+std::string document(const std::string& name);
 /// The folder problems, likewise.
 std::optional<std::filesystem::path> shipped_problems();
 /// The same of a folder "reference_data", "cases" or "problems" and any file that was installed

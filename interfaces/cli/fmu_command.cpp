@@ -9,6 +9,7 @@
 #include "bentaxis/fmu/unit.h"
 #include "bentaxis/pump/error.h"
 #include "commands.h"
+#include "data_folder.h"
 #include "options.h"
 
 namespace bentaxis::cli {
@@ -71,7 +72,7 @@ void print(const fs::path& file, const FmuOptions& options, const fmu::UnitSumma
   }
   std::cout << "\noutputs: " << has.outputs << ", states: " << has.states
             << ", event indicators: " << has.indicators << ", parameters: " << has.parameters
-            << "\nhow to try it: docs/fmu.md\n";
+            << "\nhow to try it: " << document("fmu.md") << "\n";
 }
 
 int make_unit(FmuOptions& options) {

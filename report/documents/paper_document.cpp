@@ -114,7 +114,10 @@ std::vector<std::string> answers_of(const PaperStudy& s) {
                         (p.panel.outside.empty() ? "" : ": " + p.panel.outside) + ".");
   compare::PublishedSummary numbers;
   for (const PaperNumber& number : s.numbers) numbers.count(number.row);
-  answers.push_back("Printed numbers: " + numbers.text());
+  answers.push_back(
+      "Numbers printed with these figures (compare judges all those of one case, axes of "
+      "figures among them): " +
+      numbers.text("at their conditions"));
   return answers;
 }
 

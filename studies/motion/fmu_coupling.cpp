@@ -200,7 +200,14 @@ void UnitCoupling::find_parameters(const std::vector<std::string>& wanted) {
 
 std::unique_ptr<fmu::Slave> UnitCoupling::instance(const std::string& name) const {
   auto slave = unit_->instantiate(name);
-  for (const auto& [variable, value] : parameters_) slave->set(variable, value);
+  for (const auto& [variable, value] : parameters_) {
+    try {
+      slave->set(variable, value);
+    } catch (const ComputationError& error) {
+      throw InputError(fmt::format("--fmu-set {}={}: the FMU refuses it: {}", variable.name,
+                                   number_text(value), error.what()));
+    }
+  }
   return slave;
 }
 

@@ -142,7 +142,8 @@ struct PublishedSummary {
   int other_comparable = 0;  ///< rows used to infer the geometry, or calibrated
   int other_inside = 0;
   void count(const PublishedRow& row);  ///< a row that repeats another does not count
-  std::string text() const;
+  /// @param where  rows that are counted: "in this case"
+  std::string text(const std::string& where = "in this case") const;
 };
 
 struct PublishedSection {
