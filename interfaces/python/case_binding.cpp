@@ -32,8 +32,9 @@ PythonCase::Changes changes_of(const py::handle& values) {
 const Parameter& known(const std::string& key) {
   if (const Parameter* const parameter = parameter_called(key)) return *parameter;
   const std::vector<std::string> keys = all_keys();
-  throw py::key_error("no parameter is called " + key +
-                      suggestion(key, {keys.begin(), keys.end()}));
+  throw py::key_error(
+      "no parameter is called " + key +
+      suggestion(key, {keys.begin(), keys.end()}, "listed by bentaxis.parameters()"));
 }
 
 py::object value_in(const PythonCase& the_case, const std::string& key) {

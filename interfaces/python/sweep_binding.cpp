@@ -2,6 +2,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "bentaxis/designs/sweep_document.h"
@@ -68,7 +69,8 @@ Sweep sweep(const PythonCase& the_case, const Variations& vary, const Texts& out
   request.maximise = texts_of(maximise, "maximise");
   request.model = model_called(model);
   if (!(check >= 0 && check <= 1))
-    throw InputError("check = " + number_text(check) + ": must be a share of the designs, 0 to 1");
+    throw InputError("check = " + (std::isnan(check) ? "nan" : number_text(check)) +
+                     ": must be a share of the designs, 0 to 1");
   request.check_share = check;
   if (threads < 0) throw InputError("threads = " + std::to_string(threads) + ": must be >= 0");
   const Case copy = the_case.copy();

@@ -71,7 +71,8 @@ const Column& Table::column(const std::string& wanted) const {
   if (const Column* const found = column_called(columns, wanted)) return *found;
   std::set<std::string> names;
   for (const Column& one : columns) names.insert(one.name);
-  throw pybind11::key_error("no column is called " + wanted + suggestion(wanted, names));
+  throw pybind11::key_error("no column is called " + wanted +
+                            suggestion(wanted, names, "listed by names"));
 }
 
 Table table_of(std::shared_ptr<const ResultTable> of) {

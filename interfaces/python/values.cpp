@@ -2,6 +2,8 @@
 
 #include <pybind11/stl/filesystem.h>
 
+#include <optional>
+
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -46,6 +48,12 @@ bool is_list(const py::handle& value) {
          !py::isinstance<py::dict>(value);
 }
 
+// Of numpy's arrays; nothing of what is none.
+std::optional<int> dimensions_of(const py::handle& value) {
+  if (!py::hasattr(value, "ndim") || !py::hasattr(value, "item")) return std::nullopt;
+  return py::cast<int>(value.attr("ndim"));
+}
+
 std::vector<std::string> list_of(const py::handle& values, const std::string& what,
                                  bool (*one)(const py::handle&), const char* wanted) {
   const auto text = [&](const py::handle& value) -> std::string {
@@ -75,6 +83,8 @@ std::vector<std::string> paths_of(const py::handle& paths, const std::string& wh
 }
 
 std::string toml_of(const py::handle& value, const std::string& what) {
+  // An array without dimensions counts as a list for Python, and has no elements.
+  if (dimensions_of(value) == 0 && is_list(value)) return toml_of(value.attr("item")(), what);
   if (is_flag(value))
     return py::cast<bool>(py::bool_(py::reinterpret_borrow<py::object>(value))) ? "true" : "false";
   if (is_path(value)) return toml_text(py::cast<std::filesystem::path>(value).string());
@@ -109,7 +119,11 @@ std::string values_text(const std::string& name, const py::handle& values) {
   const auto one = [&](const py::handle& value) {
     return py::isinstance<py::str>(value) ? value.cast<std::string>() : toml_of(value, name);
   };
-  if (!py::isinstance<py::iterable>(values)) return one(values);
+  const std::optional<int> dimensions = dimensions_of(values);
+  if (dimensions > 1)
+    throw InputError(name + ": must be a number, a text or a list of them, not an array of " +
+                     std::to_string(*dimensions) + " dimensions");
+  if (dimensions == 0 || !py::isinstance<py::iterable>(values)) return one(values);
   std::string text;
   for (const py::handle value : py::reinterpret_borrow<py::object>(values))
     text += (text.empty() ? "" : ",") + one(value);

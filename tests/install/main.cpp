@@ -1,14 +1,17 @@
-// Evaluates both models at one instant, sweeps over the tilt, then compares both on a
-// hydraulic case in one call.
+// Evaluates both models at one instant, sweeps over the tilt, compares both on a hydraulic case in
+// one call, then both with the engines of others that are installed.
 // usage: uses_bentaxis CASE HYDRAULIC_CASE
 #include <cmath>
 #include <cstdio>
+#include <memory>
 
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/designs/sweep_tables.h"
+#include "bentaxis/engines/run.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/study/comparison.h"
+#include "bentaxis/study/engine_comparison.h"
 
 int main(int, char** argv) {
   const bentaxis::Case the_case = bentaxis::read_case(argv[1]);
@@ -40,5 +43,18 @@ int main(int, char** argv) {
 
   const auto result = bentaxis::study::compare_models(bentaxis::read_case(argv[2]), {}, {});
   std::printf("%s\n", result.headline().c_str());
-  return difference < 1e-9 && result.agrees() && result.first.hydraulics ? 0 : 1;
+
+  bentaxis::study::EngineOptions engines;
+  engines.names = bentaxis::engines::installed_engines();
+  bool agree = true;
+  if (!engines.names.empty()) {
+    bentaxis::study::ComparisonOptions options;
+    options.engines = std::make_shared<bentaxis::study::EngineOptions>(engines);
+    const auto beside = bentaxis::study::compare_models(the_case, {}, options);
+    for (const std::string& failure : beside.engines->failures())
+      std::printf("%s\n", failure.c_str());
+    std::printf("%s\n", beside.engines->headline().c_str());
+    agree = beside.engines->failures().empty() && beside.engines->agrees();
+  }
+  return difference < 1e-9 && result.agrees() && result.first.hydraulics && agree ? 0 : 1;
 }

@@ -56,6 +56,8 @@ class CaseTest(ModuleTest):
         self.assertEqual(case["pump.tilt_deg"], 35)
         case["pump.tilt_deg"] = numpy.float64(34.5)
         self.assertEqual(case["pump.tilt_deg"], 34.5)
+        case["pump.tilt_deg"] = numpy.array(34.25)
+        self.assertEqual(case["pump.tilt_deg"], 34.25)
         case["operation.samples_per_revolution"] = numpy.int32(36)
         self.assertEqual(case["operation.samples_per_revolution"], 36)
         case.update({"pump.tilt_deg": 30, "operation.speed_rpm": -1200})

@@ -82,6 +82,17 @@ class SweepTest(ModuleTest):
         self.assertIsInstance(sweep, bentaxis.Table)
         self.assertEqual(list(sweep.to_pandas().columns), sweep.names)
 
+    def test_values_that_are_none_are_refused_by_name(self):
+        for vary, options, text in (
+                ({"pump.tilt_deg": numpy.zeros((2, 2))}, {}, "pump.tilt_deg: must be a number, a text or a list of them, "
+                                                             "not an array of 2 dimensions"),
+                ({"pump.tilt_dge": [40]}, {}, 'did you mean "pump.tilt_deg"?'),
+                ({"pump.tilt_deg": [40]}, {"check": float("nan")}, "check = nan: must be a share")):
+            with self.subTest(text):
+                self.assertIn(text, self.refused(bentaxis.InputError, lambda v=vary, o=options: bentaxis.sweep(
+                    self.case(), v, "mean:Td", **o)))
+        self.assertEqual(len(bentaxis.sweep(self.case(), {"pump.tilt_deg": numpy.array(40)}, "mean:Td")), 1)
+
     def test_a_design_is_a_run(self):
         sweep = bentaxis.sweep(self.case(), {"pump.tilt_deg": [33]}, "mean:Td")
         torque = bentaxis.run(self.case(pump__tilt_deg=33))["Td_Nm"]

@@ -41,7 +41,7 @@ struct EngineCalls {
                               double model_tolerance,
                               const PartProgress& progress_of);  ///< compare_engines
 };
-extern const EngineCalls kEngineCalls;
+extern const EngineCalls kEngineCalls;  ///< those of the component "verification"
 
 struct EngineOptions {
   std::vector<std::string> names;  ///< of engines; empty: none
