@@ -141,6 +141,11 @@ class SimulateFmuTest(FmuTest):
         line = self.refused("simulate", self.case("bap63_rated"), "--fmu", rotor, "--out", "out")
         self.assertIn("[drive] is missing", line)
 
+    def test_a_value_that_the_unit_refuses_is_bad_input(self):
+        self.run_program("fmu", self.case("bap63_rated"), "--out", "pump.fmu")
+        self.says("--fmu", "pump.fmu", "--connect", "pump:drive_speed=shaft_rpm", "--fmu-set", "pump.tilt_deg=95",
+                  contains=["--fmu-set pump.tilt_deg=95: the FMU refuses it", "[0, 90)"])
+
     def test_a_unit_that_fails_ends_it_in_its_words(self):
         self.says("--fmu", self.unit("stubborn"), "--fmu-set", "fail_at=0.002", "--communication-step", "1e-3",
                      contains=["DoStep at 0.001 s", "no level of oil at 0.001 s"], status=program.COMPUTATION_FAILED)
