@@ -1,5 +1,7 @@
 // The first program (scripts/compare_default_pump): what is not built with it is listed, and says
 // how to build it.
+#include <utility>
+
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/engine_comparison.h"
 #include "commands.h"
@@ -23,30 +25,62 @@ Command not_built(CommandParser program, const std::string& name) {
 
 }  // namespace
 
-Command add_blocktorque_command(CommandParser program) { return not_built(program, "blocktorque"); }
-Command add_calibrate_command(CommandParser program) { return not_built(program, "calibrate"); }
-Command add_fig34_command(CommandParser program) { return not_built(program, "fig34"); }
-Command add_fmu_command(CommandParser program) { return not_built(program, "fmu"); }
-Command add_hardcases_command(CommandParser program) { return not_built(program, "hardcases"); }
-Command add_identify_command(CommandParser program) { return not_built(program, "identify"); }
-Command add_inertia_command(CommandParser program) { return not_built(program, "inertia"); }
-Command add_init_command(CommandParser program) { return not_built(program, "init"); }
-Command add_life_command(CommandParser program) { return not_built(program, "life"); }
-Command add_merge_command(CommandParser program) { return not_built(program, "merge"); }
-Command add_optimise_command(CommandParser program) { return not_built(program, "optimise"); }
-Command add_outputs_command(CommandParser program) { return not_built(program, "outputs"); }
-Command add_paper_command(CommandParser program) { return not_built(program, "paper"); }
-Command add_pressure_command(CommandParser program) { return not_built(program, "pressure"); }
-Command add_problems_command(CommandParser program) { return not_built(program, "problems"); }
-Command add_rattle_command(CommandParser program) { return not_built(program, "rattle"); }
-Command add_reference_command(CommandParser program) { return not_built(program, "reference"); }
-Command add_regress_command(CommandParser program) { return not_built(program, "regress"); }
-Command add_score_command(CommandParser program) { return not_built(program, "score"); }
-Command add_sensitivity_command(CommandParser program) { return not_built(program, "sensitivity"); }
-Command add_simulate_command(CommandParser program) { return not_built(program, "simulate"); }
-Command add_sweep_command(CommandParser program) { return not_built(program, "sweep"); }
-Command add_tradeoff_command(CommandParser program) { return not_built(program, "tradeoff"); }
-Command add_uncertainty_command(CommandParser program) { return not_built(program, "uncertainty"); }
+Command add_blocktorque_command(CommandParser program) {
+  return not_built(std::move(program), "blocktorque");
+}
+Command add_calibrate_command(CommandParser program) {
+  return not_built(std::move(program), "calibrate");
+}
+Command add_fig34_command(CommandParser program) { return not_built(std::move(program), "fig34"); }
+Command add_fmu_command(CommandParser program) { return not_built(std::move(program), "fmu"); }
+Command add_hardcases_command(CommandParser program) {
+  return not_built(std::move(program), "hardcases");
+}
+Command add_identify_command(CommandParser program) {
+  return not_built(std::move(program), "identify");
+}
+Command add_inertia_command(CommandParser program) {
+  return not_built(std::move(program), "inertia");
+}
+Command add_init_command(CommandParser program) { return not_built(std::move(program), "init"); }
+Command add_life_command(CommandParser program) { return not_built(std::move(program), "life"); }
+Command add_merge_command(CommandParser program) { return not_built(std::move(program), "merge"); }
+Command add_optimise_command(CommandParser program) {
+  return not_built(std::move(program), "optimise");
+}
+Command add_outputs_command(CommandParser program) {
+  return not_built(std::move(program), "outputs");
+}
+Command add_paper_command(CommandParser program) { return not_built(std::move(program), "paper"); }
+Command add_pressure_command(CommandParser program) {
+  return not_built(std::move(program), "pressure");
+}
+Command add_problems_command(CommandParser program) {
+  return not_built(std::move(program), "problems");
+}
+Command add_rattle_command(CommandParser program) {
+  return not_built(std::move(program), "rattle");
+}
+Command add_reference_command(CommandParser program) {
+  return not_built(std::move(program), "reference");
+}
+Command add_regress_command(CommandParser program) {
+  return not_built(std::move(program), "regress");
+}
+Command add_score_command(CommandParser program) { return not_built(std::move(program), "score"); }
+Command add_sensitivity_command(CommandParser program) {
+  return not_built(std::move(program), "sensitivity");
+}
+Command add_simulate_command(CommandParser program) {
+  return not_built(std::move(program), "simulate");
+}
+Command add_sweep_command(CommandParser program) { return not_built(std::move(program), "sweep"); }
+Command add_tradeoff_command(CommandParser program) {
+  return not_built(std::move(program), "tradeoff");
+}
+Command add_uncertainty_command(CommandParser program) {
+  return not_built(std::move(program), "uncertainty");
+}
 
 void require_whole_program(const std::string& option) { refuse(option); }
 
