@@ -115,7 +115,7 @@ std::vector<std::string> answers_of(const PaperStudy& s) {
   compare::PublishedSummary numbers;
   for (const PaperNumber& number : s.numbers) numbers.count(number.row);
   answers.push_back(
-      "Numbers printed with these figures (compare judges all those of one case, axes of "
+      "Numbers printed with these figures (compare counts all those of one case, axes of "
       "figures among them): " +
       numbers.text("at their conditions"));
   return answers;
