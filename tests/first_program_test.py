@@ -61,8 +61,7 @@ class FirstProgramTest(unittest.TestCase):
             self.assertIn("(not built yet: scripts/build)", line)
             for arguments in ([], ["bap63_rated", "--out", "there", "--vary", "pump.tilt_deg=20:40:5", "-x"]):
                 result = self.run_program(FIRST, name, *arguments, status=BAD_INPUT)
-                self.assertEqual(result.stderr, f"bentaxis: {name} is not built yet: scripts/build, "
-                                                "which takes some minutes, builds it\n")
+                self.assertEqual(result.stderr, f"bentaxis: {name} is not built yet: run scripts/build (it takes some minutes)\n")
         self.assertEqual(list(self.folder.iterdir()), [])
         for name in BUILT:
             self.assertIn(name, first)
@@ -71,8 +70,7 @@ class FirstProgramTest(unittest.TestCase):
         for option, value in (("--with", REPO / "reference_data" / "high_precision" / "bap63_rated"),
                               ("--engine", "mujoco"), ("--uncertainty", 100)):
             result = self.run_program(FIRST, "compare", "bap63_rated", option, value, status=BAD_INPUT)
-            self.assertEqual(result.stderr, f"bentaxis: {option} is not built yet: scripts/build, which takes some minutes, "
-                                            "builds it\n")
+            self.assertEqual(result.stderr, f"bentaxis: {option} is not built yet: run scripts/build (it takes some minutes)\n")
         self.assertEqual(list(self.folder.iterdir()), [])
 
 

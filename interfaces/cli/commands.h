@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 #include "command_parser.h"
 
@@ -21,6 +22,9 @@ struct Command {
   CommandParser parser;
   std::function<int()> run;  ///< returns the exit status
 };
+
+/// A command that the first program (scripts/compare_default_pump) lists without having it.
+Command add_further_command(CommandParser program, const std::string& name);
 
 Command add_run_command(CommandParser program);
 Command add_blocktorque_command(CommandParser program);
