@@ -424,5 +424,35 @@ TEST(Modules, AWrongOneStandsAlone) {
   }
 }
 
+// Nearest to its own tolerance, not largest; what is not known is passed over.
+TEST(EngineVerdict, HeadlineNamesWhatIsNearestToItsTolerance) {
+  const auto cell = [](double share, double tolerance, const char* channel) {
+    study::EngineCell made{compare::difference(1, 1 + share, 1), channel, 30, tolerance};
+    return made;
+  };
+  study::EngineComparison found;
+  found.results = {"analytic", "a", "b"};
+  found.models = 1;
+  study::EngineRow unknown, row;
+  unknown.pairs.assign(3, std::vector<study::EngineCell>(3));
+  row.group = "Rs";
+  row.pairs = unknown.pairs;
+  row.pairs[0][1] = cell(0.5e-3, 1e-3, "Rs_1_x2_N");
+  row.pairs[0][2] = cell(4e-3, 1e-2, "Rs_2_x2_N");
+  found.rows = {unknown, row};
+  EXPECT_TRUE(found.agrees());
+  EXPECT_EQ(found.headline(),
+            "All engines agree. Largest difference: Rs_1_x2_N of a at 30 deg: 5.0e-04 of peak from "
+            "the analytic model (tolerance 0.001).");
+  found.rows[1].pairs[0][2] = cell(4e-2, 1e-2, "Rs_2_x2_N");
+  found.rows[1].odd = "b";
+  EXPECT_FALSE(found.agrees());
+  EXPECT_EQ(found.headline(),
+            "Engines differ: Rs_2_x2_N of b at 30 deg: 4.0e-02 of peak from the analytic model "
+            "(tolerance 0.01). Alone against the others: b.");
+  found.rows = {unknown};
+  EXPECT_EQ(found.headline(), "No engine has given results.");
+}
+
 }  // namespace
 }  // namespace bentaxis::test

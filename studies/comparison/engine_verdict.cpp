@@ -28,8 +28,9 @@ std::string EngineComparison::headline() const {
   for (const EngineRow& row : rows)
     for (std::size_t i = models; i < results.size(); ++i)
       if (const EngineCell& cell = row.pairs[0][i];
-          worst == nullptr ||
-          cell.difference.share() / cell.tolerance > worst->difference.share() / worst->tolerance) {
+          cell.difference.known() &&
+          (worst == nullptr || cell.difference.share() / cell.tolerance >
+                                   worst->difference.share() / worst->tolerance)) {
         worst = &cell;
         where = &row;
         engine = results[i];
