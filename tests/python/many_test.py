@@ -92,6 +92,7 @@ class SweepTest(ModuleTest):
                 self.assertIn(text, self.refused(bentaxis.InputError, lambda v=vary, o=options: bentaxis.sweep(
                     self.case(), v, "mean:Td", **o)))
         self.assertEqual(len(bentaxis.sweep(self.case(), {"pump.tilt_deg": numpy.array(40)}, "mean:Td")), 1)
+        self.assertEqual(len(bentaxis.sweep(self.case(), {"pump.tilt_deg": "38:40:1"}, "mean:Td", check=1).checks), 3)
 
     def test_a_design_is_a_run(self):
         sweep = bentaxis.sweep(self.case(), {"pump.tilt_deg": [33]}, "mean:Td")
