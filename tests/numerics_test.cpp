@@ -187,6 +187,42 @@ TEST(StiffIntegrator, ThrowsOnWhatNoShorterStepAvoids) {
   }
 }
 
+// y' = -k (y - cos t) with a matrix of the wrong sign until it is asked for again.
+class WrongAtFirst : public Relaxation {
+ public:
+  void jacobian(double, const double*, const double*, bool again, double* by_state) override {
+    asked_again |= again;
+    if (calls++ == 0) {
+      EXPECT_FALSE(again) << "before Newton's method has failed";
+    }
+    *by_state = asked_again ? -kRate : 1e3 * kRate;
+  }
+  int calls = 0;
+  bool asked_again = false;
+};
+
+TEST(StiffIntegrator, AsksForTheMatrixAgainWhereNewtonsMethodFailed) {
+  WrongAtFirst equations;
+  StiffIntegrator integrator(equations, 1e-8);
+  integrator.start(0, {0.5});
+  while (integrator.step(1) != StiffIntegrator::Reached::stop) {
+  }
+  EXPECT_TRUE(equations.asked_again);
+  EXPECT_NEAR(*integrator.state_at(1), Relaxation::solution(1), 1e-6);
+
+  struct Right : Relaxation {
+    void jacobian(double t, const double* y, const double* dy, bool again,
+                  double* by_state) override {
+      EXPECT_FALSE(again) << "of a matrix that is right, at " << t;
+      Relaxation::jacobian(t, y, dy, again, by_state);
+    }
+  } right;
+  StiffIntegrator other(right, 1e-8);
+  other.start(0, {0.5});
+  while (other.step(1) != StiffIntegrator::Reached::stop) {
+  }
+}
+
 Eigen::MatrixXd matrix_of(std::initializer_list<std::initializer_list<double>> rows) {
   return Eigen::MatrixXd(rows);
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <numbers>
 
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/case_writer.h"
@@ -10,6 +11,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/inputs.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/unit_of_measure.h"
 #include "bentaxis/pump/words.h"
 #include "bentaxis/results/load_scale.h"
 #include "closed_form/film.h"
@@ -399,6 +401,94 @@ TEST(Channels, HaveTheirUnitInSi) {
     const std::map<std::string, double> units = {{"mm", 1e-3}, {"bar", 1e5}};
     const auto it = units.find(channel.unit);
     EXPECT_EQ(channel.unit_in_si, it == units.end() ? 1 : it->second) << channel.name;
+  }
+}
+
+// What a unit is, read from how it is written ("L/(min.bar)"): a second source of every entry of
+// the table.
+struct Measure {
+  Dimension of;
+  double factor = 1;
+
+  void multiply(const Measure& other, int power) {
+    for (int Dimension::*const base :
+         {&Dimension::kg, &Dimension::m, &Dimension::s, &Dimension::kelvin, &Dimension::rad})
+      of.*base += power * (other.of.*base);
+    factor *= std::pow(other.factor, power);
+  }
+};
+
+Measure measure_of_symbol(std::string symbol, bool with_prefix = true) {
+  static const std::map<std::string, Measure> kSymbols = {
+      {"1", {}},
+      {"%", {{}, 0.01}},
+      {"m", {{.m = 1}}},
+      {"g", {{.kg = 1}, 1e-3}},
+      {"s", {{.s = 1}}},
+      {"min", {{.s = 1}, 60}},
+      {"in", {{.m = 1}, 0.0254}},
+      {"L", {{.m = 3}, 1e-3}},
+      {"rad", {{.rad = 1}}},
+      {"deg", {{.rad = 1}, std::numbers::pi / 180}},
+      {"gon", {{.rad = 1}, std::numbers::pi / 200}},
+      {"turn", {{.rad = 1}, 2 * std::numbers::pi}},
+      {"rpm", {{.s = -1, .rad = 1}, std::numbers::pi / 30}},
+      {"Hz", {{.s = -1}}},
+      {"N", {{.kg = 1, .m = 1, .s = -2}}},
+      {"kgf", {{.kg = 1, .m = 1, .s = -2}, 9.80665}},
+      {"lbf", {{.kg = 1, .m = 1, .s = -2}, 0.45359237 * 9.80665}},
+      {"ft", {{.m = 1}, 0.3048}},
+      {"J", {{.kg = 1, .m = 2, .s = -2}}},
+      {"W", {{.kg = 1, .m = 2, .s = -3}}},
+      {"Pa", {{.kg = 1, .m = -1, .s = -2}}},
+      {"bar", {{.kg = 1, .m = -1, .s = -2}, 1e5}},
+      {"psi", {{.kg = 1, .m = -1, .s = -2}, 0.45359237 * 9.80665 / (0.0254 * 0.0254)}},
+      {"cSt", {{.m = 2, .s = -1}, 1e-6}},
+      {"K", {{.kelvin = 1}}},
+      {"degC", {{.kelvin = 1}}}};
+  static const std::map<char, double> kPrefixes = {
+      {'u', 1e-6}, {'m', 1e-3}, {'c', 1e-2}, {'k', 1e3}, {'M', 1e6}, {'G', 1e9}, {'d', 1e-1}};
+  if (const auto found = kSymbols.find(symbol); found != kSymbols.end()) return found->second;
+  if (with_prefix && symbol.starts_with("da")) {
+    Measure measure = measure_of_symbol(symbol.substr(2), false);
+    measure.factor *= 10;
+    return measure;
+  }
+  const auto prefix = kPrefixes.find(symbol.empty() ? '?' : symbol[0]);
+  if (!with_prefix || prefix == kPrefixes.end()) throw std::logic_error("no unit " + symbol);
+  Measure measure = measure_of_symbol(symbol.substr(1), false);
+  measure.factor *= prefix->second;
+  return measure;
+}
+
+Measure measure_of(const std::string& text) {
+  Measure whole;
+  int sign = 1;
+  bool inside = false;  // of parentheses: all of it is divided by
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(". /()", at), text.size());
+    const std::size_t digits = std::min(text.find_first_of("0123456789", at + 1), end);
+    const int power = digits == end ? 1 : std::stoi(text.substr(digits, end - digits));
+    if (end > at) whole.multiply(measure_of_symbol(text.substr(at, digits - at)), sign * power);
+    if (end == text.size()) break;
+    inside = (inside || text[end] == '(') && text[end] != ')';
+    if (text[end] == '/') sign = -1;
+    if ((text[end] == '.' || text[end] == ' ') && !inside) sign = 1;
+    at = end + 1;
+  }
+  return whole;
+}
+
+TEST(UnitsOfMeasure, AreWhatTheirNamesSay) {
+  for (const UnitOfMeasure& unit : units_of_measure()) {
+    const Measure measure = measure_of(unit.standard);
+    EXPECT_EQ(unit.dimension, measure.of) << unit.standard;
+    EXPECT_NEAR(unit.factor / measure.factor, 1, 1e-12) << unit.standard;
+    EXPECT_EQ(unit.offset, unit.standard == "degC" ? 273.15 : 0) << unit.standard;
+    if (unit.display.empty()) continue;
+    EXPECT_NEAR(unit.display_factor * measure_of(unit.display).factor / measure.factor, 1, 1e-12)
+        << unit.display;
+    EXPECT_EQ(measure_of(unit.display).of, measure.of) << unit.display;
   }
 }
 
