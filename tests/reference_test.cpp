@@ -2,10 +2,12 @@
 // Made-up tables with known answers; no model is run here.
 #include "bentaxis/compare/reference.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <Eigen/Geometry>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -450,6 +452,32 @@ TEST_F(ReferenceFolder, RefusesWhatCannotBeMeant) {
   EXPECT_THAT(refusal(36, ""), HasSubstr("strictly"));
 }
 
+// Axes in every position: a rotation is taken, its image in a mirror is not.
+TEST_F(ReferenceFolder, AxesAreRightHanded) {
+  write_plain(36);
+  const auto refusal = [&](const Eigen::Matrix3d& axes) {
+    std::string text = "[curve.frame]\n";
+    for (int i = 0; i < 3; ++i)
+      text += fmt::format("{} = [{:.9f}, {:.9f}, {:.9f}]\n", "xyz"[i], axes(i, 0), axes(i, 1),
+                          axes(i, 2));
+    return thrown([&] { curve(description(36, text)); });
+  };
+  for (const double a : {0.0, 0.5, 2.0, 4.0, 5.5})
+    for (const double b : {0.0, 1.0, 2.5, 4.5})
+      for (const double c : {0.0, 1.5, 3.0}) {
+        const Eigen::Matrix3d axes = (Eigen::AngleAxisd(a, Eigen::Vector3d::UnitZ()) *
+                                      Eigen::AngleAxisd(b, Eigen::Vector3d::UnitX()) *
+                                      Eigen::AngleAxisd(c, Eigen::Vector3d::UnitY()))
+                                         .toRotationMatrix();
+        EXPECT_THAT(refusal(axes), testing::Not(HasSubstr("right-handed"))) << axes;
+        for (int row = 0; row < 3; ++row) {
+          Eigen::Matrix3d mirrored = axes;
+          mirrored.row(row) *= -1;
+          EXPECT_THAT(refusal(mirrored), HasSubstr("right-handed")) << mirrored;
+        }
+      }
+}
+
 TEST_F(ReferenceFolder, FolderIsTheManifest) {
   write_plain(36);
   const auto d = description(36);
@@ -569,6 +597,9 @@ TEST_F(PublishedNumbers, MeasuresOfACurve) {
               50 - 5 * std::sqrt(0.75), 1e-4);
   EXPECT_NEAR(row(t + "\"mean\"\nfactor = -2\ntimes = \"speed_rpm\"\n")["model"].get<double>(),
               -150000, 1e-6);
+  EXPECT_EQ(row("status = \"predicted\"\nmeasure = \"fact\"\nfact = \"speed_rpm\"\nfactor = "
+                "-2\nabove = -4000\n")["model"],
+            -3000);
   // Several channels: the magnitude of the vector.
   const double magnitude = std::hypot(x_of(0), y_of(0));
   EXPECT_NEAR(row("status = \"predicted\"\nmeasure = \"at\"\nat_deg = 0\nabove = 0\n"

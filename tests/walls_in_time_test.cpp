@@ -373,6 +373,18 @@ TEST(WallsWithOil, StepperPassesOnTouchesWithTheirPiston) {
       }
   }
   EXPECT_GT(touches, 2);
+  // Step by step an event is at the end of its step; the next one does not tell it again.
+  stepper.start(0, {mechanics->start(), oil->start()}, 0.02);
+  std::vector<double> times;
+  while (stepper.time() < 0.02) {
+    stepper.step_towards(0.02);
+    for (const auto& event : stepper.passed())
+      if (event.kind == coupled::PassedEvent::Kind::touch) {
+        EXPECT_EQ(event.time, stepper.time());
+        times.push_back(event.time);
+      }
+  }
+  EXPECT_EQ(static_cast<int>(times.size()), touches);
 }
 
 }  // namespace
