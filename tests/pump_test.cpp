@@ -10,7 +10,9 @@
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/inputs.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/text.h"
 #include "bentaxis/pump/unit_of_measure.h"
 #include "bentaxis/pump/words.h"
 #include "bentaxis/results/load_scale.h"
@@ -402,6 +404,34 @@ TEST(Channels, HaveTheirUnitInSi) {
     const auto it = units.find(channel.unit);
     EXPECT_EQ(channel.unit_in_si, it == units.end() ? 1 : it->second) << channel.name;
   }
+}
+
+TEST(Lists, AreSearchedJoinedAndExtended) {
+  std::vector<std::string> list = {"a", "b"};
+  EXPECT_TRUE(contains(list, "b"));
+  EXPECT_FALSE(contains(list, "c"));
+  add_once(list, "b");
+  add_once(list, "c");
+  EXPECT_EQ(joined(list), "a, b, c");
+  EXPECT_EQ(joined(std::vector<std::string>{"", "", "x"}, "-"), "--x");
+  EXPECT_EQ(joined(std::vector<std::string>()), "");
+  EXPECT_EQ(joined(std::set<int>{2, 1}, " or ", [](int i) { return std::to_string(i); }), "1 or 2");
+  std::vector<std::string> more = {"d"};
+  append(list, more);
+  append(list, std::vector<std::string>{"e"});
+  EXPECT_EQ(joined(list, ""), "abcde");
+  EXPECT_EQ(more[0], "d");
+}
+
+TEST(Texts, AreTrimmedLoweredAndReplaced) {
+  EXPECT_EQ(trimmed(" \ta b\r\n"), "a b");
+  EXPECT_EQ(trimmed("\ta ", " "), "\ta");
+  EXPECT_EQ(trimmed(" \n "), "");
+  EXPECT_EQ(lower_case("AZaz[@09\xC4"), "azaz[@09\xC4");
+  EXPECT_EQ(replace_all("aaa", "aa", "a"), "aa");
+  EXPECT_EQ(replace_all("a.b.", ".", ".."), "a..b..");
+  EXPECT_EQ(unit_after("Nm"), " Nm");
+  EXPECT_EQ(unit_after(""), "");
 }
 
 // What a unit is, read from how it is written ("L/(min.bar)"): a second source of every entry of
