@@ -145,7 +145,12 @@ void summarize(const Network& network, const Integrals& over_period, Summary& su
   summary.ideal_flow = way * summary.displacement / (n * time);
   summary.mass_flow = over_period.load / time;
   summary.flow = summary.mass_flow / density;
-  summary.volumetric_efficiency = summary.flow / summary.ideal_flow;
+  // What is spent is the ideal flow of a pump and the flow that a motor takes.
+  if (!summary.motors())
+    summary.volumetric_efficiency = summary.flow / summary.ideal_flow;
+  else
+    summary.volumetric_efficiency =
+        summary.flow < 0 ? summary.ideal_flow / summary.flow : not_computed();
   summary.leakage = over_period.leakage / time / density;
   summary.work = way * over_period.work * n;
   summary.mass_in = over_period.suction * n;

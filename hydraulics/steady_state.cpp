@@ -569,7 +569,8 @@ std::vector<Line> lines(const SteadyState& state) {
        "ideal_flow_l_per_min", true},
       {"mean flow to the load", s.flow / kLitrePerMinute, "l/min", "flow_l_per_min", true},
       {"mean mass flow to the load", s.mass_flow, "kg/s", "mass_flow_kg_per_s", true},
-      {"volumetric efficiency, mean flow to the load over ideal flow",
+      {s.motors() ? "volumetric efficiency as a motor, ideal flow over the flow taken"
+                  : "volumetric efficiency, mean flow to the load over ideal flow",
        100 * s.volumetric_efficiency, "%", "volumetric_efficiency_percent", true},
       {"leakage", s.leakage / kLitrePerMinute, "l/min", "leakage_l_per_min", true},
       {"mean delivery pressure", s.delivery_mean / bar, "bar", "delivery_mean_bar", true},

@@ -179,7 +179,7 @@ std::vector<Row> oil_figures(const hydraulics::Summary& s, std::size_t models) {
   flow.note += std::string(flow.note.empty() ? "" : "; ") + "at the density in the suction port";
   return {std::move(flow),
           row("flow to the load, maximum less minimum over the mean", "%", 100 * s.flow_ripple),
-          row(s.flow < 0 ? "flow to the load over ideal flow" : "volumetric efficiency", "%",
+          row(s.motors() ? "volumetric efficiency as a motor" : "volumetric efficiency", "%",
               100 * s.volumetric_efficiency),
           std::move(least), std::move(greatest)};
 }

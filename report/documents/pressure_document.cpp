@@ -34,16 +34,13 @@ double bar(const OperatingPoint& point) {
 std::vector<std::string> pressure_answers(const OperatingPoint& point,
                                           const std::vector<report::TimingRow>& timing) {
   const hydraulics::Summary& s = point.state().summary;
-  // Of a motor the oil that it takes is what is spent.
-  const bool motor = s.flow < 0;
-  std::vector<std::string> answers = {fmt::format(
-      "{} {:.4g} l/min at a mean of {:.4g} bar and {:.5g} rpm: volumetric efficiency{} {:.4g} "
-      "%, ripple {:.3g} bar peak to peak.",
-      motor ? "Takes" : "Delivers", std::abs(s.flow) / kLitrePerMinute,
-      s.delivery_mean / kPascalPerBar, point.the_case().operation.speed_rpm,
-      motor ? " as a motor" : "",
-      100 * (motor ? 1 / s.volumetric_efficiency : s.volumetric_efficiency),
-      (s.delivery_greatest - s.delivery_least) / kPascalPerBar)};
+  std::vector<std::string> answers = {
+      fmt::format("{} {:.4g} l/min (at suction density) at a mean of {:.4g} bar and {:.5g} "
+                  "rpm: volumetric efficiency{} {:.4g} %, ripple {:.3g} bar peak to peak.",
+                  s.flow < 0 ? "Takes" : "Delivers", std::abs(s.flow) / kLitrePerMinute,
+                  s.delivery_mean / kPascalPerBar, point.the_case().operation.speed_rpm,
+                  s.motors() ? " as a motor" : "", 100 * s.volumetric_efficiency,
+                  (s.delivery_greatest - s.delivery_least) / kPascalPerBar)};
   answers.push_back(timing_answer(timing));
   return answers;
 }

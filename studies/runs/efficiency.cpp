@@ -31,7 +31,8 @@ double flow_at_delivery(const hydraulics::SteadyState& state) {
 std::span<const EfficiencyLine> efficiency_lines() {
   static constexpr EfficiencyLine kLines[] = {
       {"volumetric", "volumetric",
-       "mass flow to the load over that of the ideal flow at the density of the inlet",
+       "mass flow to the load over that of the ideal flow at the density of the inlet; of a motor "
+       "the inverse",
        &Efficiencies::volumetric},
       {"mechanical", "hydraulic-mechanical",
        "ISO 4409: ideal torque V dp / 2 pi over mean Td; above 100 % is possible where oil is soft",

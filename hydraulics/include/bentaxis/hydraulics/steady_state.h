@@ -18,12 +18,16 @@ class Network;
 
 /// What an engineer reads off a turn. SI, pressures gauge.
 struct Summary {
+  /// Backwards the oil drives the pump: a motor.
+  bool motors() const { return ideal_flow < 0; }
+
   double displacement = 0;           ///< m3 per revolution, N A stroke
   double ideal_flow = 0;             ///< m3/s, displacement x speed, below 0 backwards
   double density = 0;                ///< kg/m3, in the suction port: that of all volume flows here
   double mass_flow = 0;              ///< kg/s, mean, to the load
   double flow = 0;                   ///< m3/s, the same / density
-  double volumetric_efficiency = 0;  ///< flow / ideal_flow
+  /// flow / ideal_flow; of a motor ideal_flow / flow, not_computed() where it takes no oil.
+  double volumetric_efficiency = 0;
   double leakage = 0;                ///< m3/s, mean, of all chambers
   double delivery_mean = 0, delivery_least = 0,
          delivery_greatest = 0;  ///< Pa, of the delivery volume

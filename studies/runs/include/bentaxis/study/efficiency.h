@@ -27,7 +27,8 @@ double flow_at_delivery(const hydraulics::SteadyState& state);
 struct Efficiencies {
   // Of the energy balance and of mass: overall = volumetric x mechanical_mass.
   double volumetric = 0;       ///< mass flow to the load over that of the ideal flow at the density
-                               ///< of the inlet; of a pump with the hydraulic model
+                               ///< of the suction port, of a motor the inverse; with the hydraulic
+                               ///< model
   double mechanical_mass = 0;  ///< the ideal mass flow times the useful energy of a unit of mass,
                                ///< over the power of the drive
   double overall = 0;          ///< PumpPower::useful over the power of the drive
