@@ -23,10 +23,12 @@ void scan(ValidityLimit& limit, const ResultTable& table,
   std::size_t violated = 0;
   std::size_t counted = 0;
   std::vector<double> values(table.rows());
+  limit.rows.assign(table.rows(), ValidityLimit::Row::unknown);
   double smallest = 0;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const double value = values[row] = must_not_be_negative(row);
     if (!is_computed(value)) continue;
+    limit.rows[row] = value < 0 ? ValidityLimit::Row::violated : ValidityLimit::Row::holds;
     if (value < 0) ++violated;
     if (counted++ == 0 || value < smallest) {
       smallest = value;
@@ -130,6 +132,20 @@ ValidityLimit reach_limit(const Model& model, const Case& the_case, const Sample
 }
 
 }  // namespace
+
+double share_beyond(const std::vector<ValidityLimit>& limits) {
+  using Row = ValidityLimit::Row;
+  std::vector<Row> any;
+  for (const ValidityLimit& limit : limits) {
+    if (!limit.applicable) continue;
+    any.resize(std::max(any.size(), limit.rows.size()), Row::unknown);
+    for (std::size_t row = 0; row < limit.rows.size(); ++row)
+      any[row] = std::max(any[row], limit.rows[row]);
+  }
+  const auto known = std::count_if(any.begin(), any.end(), [](Row r) { return r != Row::unknown; });
+  const auto beyond = std::count(any.begin(), any.end(), Row::violated);
+  return known > 0 ? static_cast<double>(beyond) / static_cast<double>(known) : 0;
+}
 
 std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumptions& assumptions,
                                           const Samples& samples, const ResultTable& table) {

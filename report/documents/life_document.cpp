@@ -150,11 +150,9 @@ std::string share_text(double share, const PumpLife& life) {
                      life.mean_speed_rpm == 0 ? "angles" : "revolutions");
 }
 
-// Of the limit that is exceeded most; "" where none is.
+// Where any limit is exceeded; "" where none is.
 std::string not_valid_of(const PumpLife& life) {
-  double share = 0;
-  for (const study::LifeLimit& l : life.limits) share = std::max(share, l.violated_share);
-  return share > 0 ? share_text(share, life) : "";
+  return life.violated_share > 0 ? share_text(life.violated_share, life) : "";
 }
 
 // Which bearing sets the life, and which row of the duty cycle uses up most of it.

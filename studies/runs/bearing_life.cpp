@@ -114,24 +114,34 @@ BearingLife life_of(Bearing bearing, const BearingRating& rating,
   return life;
 }
 
-std::vector<LifeLimit> limits_of(const BearingRatings& b, const std::vector<LifePoint>& points,
-                                 const std::vector<double>& revolutions) {
-  std::vector<LifeLimit> limits;
+void find_limits(const BearingRatings& b, const std::vector<LifePoint>& points,
+                 const std::vector<double>& revolutions, PumpLife& life) {
+  // At standstill every angle counts alike: there are no revolutions to weigh them by.
+  const bool turns =
+      std::any_of(revolutions.begin(), revolutions.end(), [](double count) { return count > 0; });
+  double all = 0;
+  std::vector<double> weights;  // of every angle of every point
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::size_t angles = points[i].theta_deg.size();
+    const double each = (turns ? revolutions[i] : 1) / static_cast<double>(angles);
+    weights.insert(weights.end(), angles, each);
+  }
+  for (const double weight : weights) all += weight;
+  std::vector<bool> beyond(weights.size(), false);  // any limit
   using OfAngle = std::function<double(const BearingLoads&, std::size_t)>;
   // Scans what must not be negative at any angle; `shown` is what is said of it.
   const auto scan = [&](LifeLimit limit, const OfAngle& not_negative, const OfAngle& shown) {
-    double all = 0, violated = 0, smallest = HUGE_VAL;
-    // At standstill every angle counts alike: there are no revolutions to weigh them by.
-    const bool turns =
-        std::any_of(revolutions.begin(), revolutions.end(), [](double count) { return count > 0; });
+    double violated = 0, smallest = HUGE_VAL;
+    std::size_t at = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const LifePoint& p = points[i];
       const BearingLoads& loads = p.loads[static_cast<std::size_t>(limit.bearing)];
-      const double each = (turns ? revolutions[i] : 1) / static_cast<double>(p.theta_deg.size());
-      for (std::size_t k = 0; k < p.theta_deg.size(); ++k) {
+      for (std::size_t k = 0; k < p.theta_deg.size(); ++k, ++at) {
         const double value = not_negative(loads, k);
-        all += each;
-        if (value < 0) violated += each;
+        if (value < 0) {
+          violated += weights[at];
+          beyond[at] = true;
+        }
         if (value >= smallest) continue;
         smallest = value;
         limit.worst = shown(loads, k);
@@ -140,7 +150,7 @@ std::vector<LifeLimit> limits_of(const BearingRatings& b, const std::vector<Life
       }
     }
     limit.violated_share = all > 0 ? violated / all : 0;
-    limits.push_back(std::move(limit));
+    life.limits.push_back(std::move(limit));
   };
   const OfAngle axial = [](const BearingLoads& l, std::size_t k) { return l.axial[k]; };
   const OfAngle load = [](const BearingLoads& l, std::size_t k) { return l.equivalent[k]; };
@@ -191,7 +201,10 @@ std::vector<LifeLimit> limits_of(const BearingRatings& b, const std::vector<Life
         },
         load0);
   }
-  return limits;
+  double violated = 0;
+  for (std::size_t at = 0; at < weights.size(); ++at)
+    if (beyond[at]) violated += weights[at];
+  life.violated_share = all > 0 ? violated / all : 0;
 }
 
 }  // namespace
@@ -314,7 +327,7 @@ PumpLife pump_life(const Case& the_case, const std::vector<LifePoint>& points) {
   }
   life.revolutions = combined_life(lives, slopes);
   life.hours = hours(life.revolutions, life.mean_speed_rpm);
-  life.limits = limits_of(b, points, revolutions);
+  find_limits(b, points, revolutions, life);
   return life;
 }
 

@@ -133,9 +133,7 @@ std::vector<std::string> limit_answers(const std::vector<analytic::ValidityLimit
 }
 
 std::string not_valid_text(const std::vector<analytic::ValidityLimit>& limits) {
-  double share = 0;
-  for (const auto& limit : limits)
-    if (limit.applicable) share = std::max(share, limit.violated_share);
+  const double share = analytic::share_beyond(limits);
   return share > 0 ? fmt::format("over {:.3g} % of the turn", 100 * share) : "";
 }
 

@@ -22,7 +22,14 @@ struct ValidityLimit {
   std::string unit;
   double theta_deg = 0;     ///< of the worst value
   std::string consequence;  ///< what a violation means, with figures
+  /// Of every row whether it holds; of none where it is not applicable.
+  enum class Row : unsigned char { unknown, holds, violated };
+  std::vector<Row> rows = {};
 };
+
+/// Share of the angles at which any of the limits is violated, 0..1: it is no pump's behaviour
+/// there.
+double share_beyond(const std::vector<ValidityLimit>& limits);
 
 /// Checks a table of results (of either model) against the limits of what was modelled: tooth force
 /// on the driving flank, and how far two flanks differ from the one that the paper prints, film

@@ -122,6 +122,7 @@ struct PumpLife {
   double hours = 0;
   double mean_speed_rpm = 0;  ///< of the whole time, standstill too; >= 0
   std::vector<LifeLimit> limits;
+  double violated_share = 0;  ///< of the revolutions, in which any of the limits is violated
 
   const BearingLife& of(Bearing bearing) const {
     return bearings[static_cast<std::size_t>(bearing)];
