@@ -377,6 +377,52 @@ TEST(MotionAnswers, AreThoseOfTheRows) {
   EXPECT_NEAR(a.beyond_plate->plate_mm, plate, 1e-12);
 }
 
+// Speed over time, s -> rpm, at 4000 rows a second; the angle follows from it.
+Trajectory run_at(const Case& the_case, double seconds, const std::function<double(double)>& rpm) {
+  Trajectory run;
+  run.table = trajectory_table("analytic", ChannelLayout(the_case.pump), *the_case.drive);
+  const std::vector<double> values(ChannelLayout(the_case.pump).size(), 0);
+  constexpr double kStep = 1 / 4000.0;
+  double theta = 0;
+  for (int i = 0; i * kStep <= seconds; ++i) {
+    std::vector<double> state(run.table.state_names.size(), 0);
+    state[static_cast<std::size_t>(StateColumn::time)] = i * kStep;
+    state[static_cast<std::size_t>(StateColumn::shaft_speed)] = rpm(i * kStep);
+    state[static_cast<std::size_t>(StateColumn::theta)] = theta;
+    theta += 6 * rpm((i + 0.5) * kStep) * kStep;
+    append_trajectory_row(run.table, state, values, {});
+    run.lag.push_back(0);
+  }
+  return run;
+}
+
+// The instant at which a simulation ends decides nothing: the pistons let the speed ripple.
+TEST(MotionAnswers, SpeedAtTheEndIsAMean) {
+  const Case the_case = read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_start_up.toml");
+  const double frequency = the_case.pump.geometry.pistons * 2000.0 / 60;
+  const auto rpm = [&](double time) {
+    return 2000 - 500 * std::exp(-time / 0.01) + 8 * std::sin(2 * kPi * frequency * time);
+  };
+  for (const double seconds : {0.098, 0.0985, 0.099, 0.0995, 0.1}) {
+    const MotionAnswers a = motion_answers(run_at(the_case, seconds, rpm), the_case);
+    EXPECT_NEAR(a.end_rpm, 2000, 0.5) << seconds;
+    ASSERT_TRUE(a.reached_s.has_value());
+    EXPECT_NEAR(*a.reached_s, 0.03, 0.004);
+    EXPECT_TRUE(a.settled);
+  }
+  const auto accelerating = [](double time) { return 1800 * time; };
+  const MotionAnswers a = motion_answers(run_at(the_case, 0.1, accelerating), the_case);
+  EXPECT_FALSE(a.settled);
+  EXPECT_EQ(a.end_rpm, a.last_rpm) << "not a part of a turn yet";
+  // A ripple above a twentieth of the change: the speed is never near its mean for good.
+  const auto rippling = [&](double time) {
+    return 2000 - (time < 0.01 ? 20 : 0) + 8 * std::sin(2 * kPi * frequency * time);
+  };
+  for (const double seconds : {0.0976, 0.0984, 0.0993})
+    EXPECT_FALSE(
+        motion_answers(run_at(the_case, seconds, rippling), the_case).reached_s.has_value());
+}
+
 TEST(MotionAnswers, SayThatTheShaftTurnsBackwards) {
   const Case the_case = read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_start_up.toml");
   const auto backwards = [&](const std::vector<double>& speeds) {

@@ -526,12 +526,14 @@ std::vector<std::string> answers_of(const MotionAnswers& a) {
   std::vector<std::string> answers;
   if (a.reached_s)
     answers.push_back(fmt::format(
-        "Speed: {:g} % of {:.5g} rpm{} after {}.", 100 * MotionAnswers::kReached,
-        a.first_rpm == 0 ? a.last_rpm : a.last_rpm - a.first_rpm,
+        "Speed: {:g} % of {:.5g} rpm{} after {}{}.", 100 * MotionAnswers::kReached,
+        a.first_rpm == 0 ? a.end_rpm : a.end_rpm - a.first_rpm,
         a.first_rpm == 0
             ? ""
-            : fmt::format(", the change from {:.5g} to {:.5g} rpm,", a.first_rpm, a.last_rpm),
-        milliseconds(*a.reached_s)));
+            : fmt::format(", the change from {:.5g} to {:.5g} rpm,", a.first_rpm, a.end_rpm),
+        milliseconds(*a.reached_s),
+        a.settled ? ""
+                  : "; it still changes at the end, so that a longer simulation says another"));
   if (a.backwards)
     answers.push_back(fmt::format("The shaft also turns backwards: up to {:.4g} rpm at {}.",
                                   a.backwards->rpm, milliseconds(a.backwards->at_s)));

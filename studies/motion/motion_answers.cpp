@@ -15,6 +15,39 @@ namespace {
 std::size_t rows_of(const Trajectory& run) { return run.lag.size(); }
 double time_of(const Trajectory& run, std::size_t row) { return run.state(row, StateColumn::time); }
 
+// Mean speed over the N-th of a turn that ends with a row; of that row where the shaft has not
+// turned so far since the row before.
+double mean_speed(const Trajectory& run, std::size_t end, int pistons) {
+  const auto speed = [&](std::size_t row) { return run.state(row, StateColumn::shaft_speed); };
+  const auto turned = [&](std::size_t row) {
+    return std::abs(run.state(end, StateColumn::theta) - run.state(row, StateColumn::theta));
+  };
+  const double pitch = 360.0 / pistons;
+  double area = 0;
+  for (std::size_t row = end; row > 0; --row) {
+    double step = time_of(run, row) - time_of(run, row - 1), before = speed(row - 1);
+    const bool last = turned(row - 1) >= pitch;
+    if (last) {  // of the step that begins before that N-th, the part within
+      const double part = (pitch - turned(row)) / (turned(row - 1) - turned(row));
+      step *= part;
+      before = speed(row) + part * (before - speed(row));
+    }
+    area += step * (speed(row) + before) / 2;
+    const double time = time_of(run, end) - time_of(run, row) + step;
+    if (last) return time > 0 ? area / time : speed(end);
+  }
+  return speed(end);
+}
+
+// Whether the speed, at the end of its change, has come to it.
+bool is_settled(const Trajectory& run, double first, double end, int pistons) {
+  const double until = time_of(run, 0) + 0.9 * (time_of(run, rows_of(run) - 1) - time_of(run, 0));
+  std::size_t row = rows_of(run) - 1;
+  while (row > 0 && time_of(run, row) > until) --row;
+  return std::abs(end - mean_speed(run, row, pistons)) <=
+         MotionAnswers::kSettled * std::abs(end - first);
+}
+
 // From when on the speed has made its change, for good.
 std::optional<double> reached(const Trajectory& run, double first, double last) {
   double fastest = 0;
@@ -24,7 +57,8 @@ std::optional<double> reached(const Trajectory& run, double first, double last) 
   if (!(std::abs(last - first) >= MotionAnswers::kLeastChange * fastest) || last == first)
     return std::nullopt;
   const auto made = [&](std::size_t row) { return (speed(row) - first) / (last - first); };
-  std::size_t row = rows_of(run) - 1;  // which has made all of it
+  std::size_t row = rows_of(run) - 1;
+  if (!(made(row) >= MotionAnswers::kReached)) return std::nullopt;
   while (row > 0 && made(row - 1) >= MotionAnswers::kReached) --row;
   if (row == 0) return time_of(run, 0);
   const double part = (MotionAnswers::kReached - made(row - 1)) / (made(row) - made(row - 1));
@@ -143,7 +177,10 @@ MotionAnswers motion_answers(const Trajectory& run, const Case& the_case) {
   if (rows_of(run) == 0) return answers;
   answers.first_rpm = run.state(0, StateColumn::shaft_speed);
   answers.last_rpm = run.state(rows_of(run) - 1, StateColumn::shaft_speed);
-  answers.reached_s = reached(run, answers.first_rpm, answers.last_rpm);
+  const int pistons = the_case.pump.geometry.pistons;
+  answers.end_rpm = mean_speed(run, rows_of(run) - 1, pistons);
+  answers.reached_s = reached(run, answers.first_rpm, answers.end_rpm);
+  answers.settled = is_settled(run, answers.first_rpm, answers.end_rpm, pistons);
   answers.backwards = backwards(run, answers.first_rpm, answers.last_rpm);
   const ResultTable& results = run.table.results;
   if (const std::size_t torque = results.find("Td_z1_Nm"); torque < results.columns())

@@ -15,10 +15,17 @@ struct MotionAnswers {
   /// A change of the shaft's speed that is asked about, of its largest.
   static constexpr double kLeastChange = 0.05;
 
-  double first_rpm = 0, last_rpm = 0;  ///< of the shaft
-  /// From when on the shaft has made kReached of the change of its speed, for good; between two
-  /// rows interpolated. Nothing where the change is below kLeastChange.
+  /// Share of the change that the speed may make in the last tenth of the time to have settled.
+  static constexpr double kSettled = 0.02;
+
+  double first_rpm = 0, last_rpm = 0;  ///< of the shaft, at the two ends
+  /// Its mean over the last N-th of a turn: pistons, one after the other, let the speed ripple.
+  double end_rpm = 0;
+  /// From when on the shaft has made kReached of the change to end_rpm, for good; between two
+  /// rows interpolated. Nothing where the change is below kLeastChange, or the ripple is above
+  /// what is left of it.
   std::optional<double> reached_s;
+  bool settled = true;  ///< less than kSettled of the change in the last tenth of the time
 
   /// The shaft's fastest turning against the direction of its start and end, where that is above
   /// kLeastChange of its largest speed.
