@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <numeric>
 #include <optional>
 
 #include "bentaxis/analytic/derived.h"
@@ -136,6 +137,12 @@ std::optional<Turn> turn_of(const Facts& f) {
     const ChannelLayout at(c.pump);
     const std::size_t rows = table.rows();
     turn.lowest_pressure = turn.highest_pressure = trace(table.theta_deg[0]);
+    if (c.pressure.kind == PressureKind::curve) {
+      const auto all =
+          PeriodicSpline(c.pressure.curve.theta_deg, c.pressure.curve.pressure).extremes();
+      turn.lowest_pressure = all.least;
+      turn.highest_pressure = all.greatest;
+    }
     double work = 0;
     for (std::size_t row = 0; row < rows; ++row) {
       const double p = trace(table.theta_deg[row]);
@@ -324,6 +331,57 @@ bool has_teeth(const Facts& f) {
 const Slips kOfLength = {kSign, kTenfold, kTenth, kMetres, kMicrometres};
 const Slips kOfMass = {kTenth, kTenfold, kGrams, kTons};
 const Slips kOfInertia = {kTenth, kTenfold, kKgM2, kGMm2};
+
+// The sums over N pistons repeat after the N-th of a turn: angles that fall on the same places of
+// it again and again say less than they seem to.
+std::string repeated_samples(const Facts& f) {
+  constexpr int kLeastPositions = 6;
+  const int samples = f.the_case.operation.samples_per_revolution, pistons = f.g.pistons;
+  const int positions = samples / std::gcd(samples, pistons);
+  if (samples < kLeastPositions || positions >= kLeastPositions) return "";
+  int better = samples;
+  while (std::gcd(better, pistons) != 1) ++better;
+  return fmt::format(
+      "samples_per_revolution = {} shows the {} pistons in {} position{} only: drive torque, "
+      "bearing "
+      "forces and other sums over the pistons repeat {} times in a turn; {} angles would show {}",
+      samples, pistons, positions, positions == 1 ? "" : "s", pistons, better, better);
+}
+
+// The widest gap between points of a curve of pressure, if it is too wide.
+std::string gap_of_curve(const PressureSpec& pressure) {
+  constexpr double kWidest = 30;  // deg
+  const std::vector<double>& theta = pressure.curve.theta_deg;
+  if (theta.size() < 3) return "";
+  double from = theta.back(), to = theta.front() + 360;
+  for (std::size_t i = 1; i < theta.size(); ++i)
+    if (theta[i] - theta[i - 1] > to - from) {
+      from = theta[i - 1];
+      to = theta[i];
+    }
+  if (to - from <= kWidest) return "";
+  const PressureTrace trace(pressure);
+  const auto [low, high] =
+      std::minmax_element(pressure.curve.pressure.begin(), pressure.curve.pressure.end());
+  double furthest = 0, at = from;  // beyond all points
+  for (int i = 1; i < 100; ++i) {
+    const double angle = from + (to - from) * i / 100, p = trace(angle);
+    const double beyond = std::max(p - *high, *low - p);
+    if (beyond > furthest) {
+      furthest = beyond;
+      at = angle;
+    }
+  }
+  const double covered = theta.back() - theta.front();
+  return fmt::format(
+      "[pressure] file has no point from {:.5g} to {:.5g} deg: what acts there is what a spline "
+      "makes "
+      "of the points around{}{}",
+      from, wrap_degrees(to),
+      furthest > 0 ? fmt::format(", as {:.4g} bar at {:.4g} deg", bar(trace(at)), wrap_degrees(at))
+                   : "",
+      covered < 2 * kPi ? guess(covered, 180, 360, {kRadians}) : "");
+}
 
 // The ports of the plate, then those of [hydraulics], up to the first that something is said of.
 template <class Text>
@@ -945,10 +1003,12 @@ const Check kChecks[] = {
      }},
     {"gravity", "gravity that is not 0 and outside {0:g} .. {1:g} m/s2 (it acts along -y1)",
      "operation", "gravity_m_per_s2", [](const Facts& f) { return f.pump.gravity != 0; }},
-    {"samples", "fewer than 6 or more than 1e6 angles in a turn, or more than 1e4 revolutions",
+    {"samples",
+     "fewer than 6 or more than 1e6 angles in a turn, or more than 1e4 revolutions; a number of "
+     "angles that shares so much with N that the N pistons are seen in fewer than 6 positions",
      [](const Facts& f) {
        return first_of({implausible(f, "operation", "samples_per_revolution"),
-                        implausible(f, "operation", "revolutions")});
+                        implausible(f, "operation", "revolutions"), repeated_samples(f)});
      }},
     // Pressure
     {"pressure-beyond-1000-bar", "delivery, suction or the curve above 1000 bar",
@@ -1010,9 +1070,13 @@ const Check kChecks[] = {
                  : "; another zero or sense of the angle, or "
                    "another unit of pressure?");
      }},
+    {"curve-gap", "neighbouring points of the curve are more than 30 deg apart",
+     [](const Facts& f) { return f.the_case.pressure.kind == PressureKind::curve; },
+     [](const Facts& f) { return gap_of_curve(f.the_case.pressure); }},
     {"curve-pressure",
-     "the highest pressure of the curve is not within 0.5 .. 2 times delivery_bar, or the lowest "
-     "is below absolute vacuum by more than 10 % of it",
+     "the highest pressure of the curve is not within 0.5 .. 2 times delivery_bar, the lowest "
+     "is below absolute vacuum by more than 10 % of it, or the curve does more than 1.5 of the "
+     "ideal work (delivery - suction) x A x stroke over a turn",
      [](const Facts& f) {
        return f.the_case.pressure.kind == PressureKind::curve && f.turn &&
               bar(f.ports.delivery) > 1;
@@ -1023,9 +1087,15 @@ const Check kChecks[] = {
            {outside("[pressure] file: its highest", bar(f.turn->highest_pressure), delivery / 2,
                     2 * delivery, "bar", fmt::format("delivery_bar = {:.6g}", delivery),
                     {{10, "in MPa?"}, kPascals, kKilopascals, kPsi}),
-            outside("[pressure] file: its lowest", bar(f.turn->lowest_pressure),
-                    -1.014 - delivery / 10, HUGE_VAL, "bar", "absolute vacuum is at -1.013",
-                    {kSign})});
+            outside(
+                "[pressure] file: its lowest", bar(f.turn->lowest_pressure), -1.014 - delivery / 10,
+                HUGE_VAL, "bar",
+                "absolute vacuum is at -1.013, and a spline may leave its points by a tenth of "
+                "delivery_bar",
+                f.turn->highest_pressure < -f.turn->lowest_pressure / 2 ? Slips{kSign} : Slips{}),
+            outside("[pressure] file: its work over a turn, over the ideal one,",
+                    f.turn->work_ratio, -HUGE_VAL, 1.5, "",
+                    fmt::format("times the ideal work with delivery_bar = {:.6g}", delivery))});
      }},
     // Port plate
     {"lands-off-bores",
