@@ -12,6 +12,7 @@
 #include "bentaxis/files/stored_values.h"
 #include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/achieved_error.h"
@@ -676,6 +677,13 @@ std::vector<Failure> failures_of(const ComparisonResult& r) {
   return failures;
 }
 
+std::vector<std::string> compared_groups(const compare::Comparison& comparison) {
+  std::vector<std::string> groups;
+  for (const auto& c : comparison.channels)
+    if (c.compared()) add_once(groups, c.channel.group);
+  return groups;
+}
+
 std::string where_in_words(const compare::ChannelComparison& c) {
   return fmt::format("{} at {:g} deg: {:.1e} {}, {:.1e} of {}", c.channel.name,
                      c.theta_of_largest_deg, c.largest, c.channel.unit, c.largest_over_peak(),
@@ -683,6 +691,14 @@ std::string where_in_words(const compare::ChannelComparison& c) {
 }
 
 }  // namespace
+
+bool only_one_computed(const compare::Comparison& comparison) {
+  return std::any_of(comparison.channels.begin(), comparison.channels.end(), [](const auto& c) {
+    return c.verdict == compare::Verdict::not_computed &&
+           (c.missing == compare::Comparable::first_missing ||
+            c.missing == compare::Comparable::second_missing);
+  });
+}
 
 std::optional<DifferenceCause> ComparisonResult::cause() const {
   if (agrees() || split) return std::nullopt;
@@ -766,9 +782,12 @@ std::string ComparisonResult::headline() const {
         agrees() ? "Explained." : "Not explained.", where,
         agrees() ? "After accounting for each assumption" : "Each assumption accounted for",
         split->largest_rest(), split->tolerance);
-  return fmt::format("{} Largest difference {} (tolerance {:g}).{}",
-                     agrees() ? "The two models agree." : "The two models differ.", where,
-                     comparison.tolerance, because);
+  // What one model alone computed has agreed with nothing.
+  const std::string on = only_one_computed(comparison)
+                             ? " on what both computed: " + joined(compared_groups(comparison))
+                             : "";
+  return fmt::format("The two models {}{}. Largest difference {} (tolerance {:g}).{}",
+                     agrees() ? "agree" : "differ", on, where, comparison.tolerance, because);
 }
 
 void check_same_run(const Case& first, const Case& second) {

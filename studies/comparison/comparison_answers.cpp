@@ -86,9 +86,10 @@ std::vector<std::string> comparison_answers(const ComparisonResult& r) {
   const PumpParameters& pump = r.first.the_case.pump;
   std::vector<std::string> of_turn = TurnSummary(r.analytic).answers();
   append_all(of_turn, TransferSummary(pump, r.analytic).answers());
-  // Under unequal assumptions the other model's are others.
-  if (r.split)
-    for (std::string& sentence : of_turn) sentence.insert(0, "By the analytic model: ");
+  // Under unequal assumptions the other model's are others; in a smaller scene it has none.
+  if (r.split || only_one_computed(r.comparison))
+    for (std::string& sentence : of_turn)
+      sentence.insert(0, r.split ? "By the analytic model: " : "By the analytic model alone: ");
   append_all(sentences, std::move(of_turn));
   if (std::string play = free_play_answer(pump); !play.empty())
     sentences.push_back(std::move(play));

@@ -116,6 +116,10 @@ struct ComparisonResult {
   std::string headline() const;
 };
 
+/// Whether one of the tables alone has values of a channel: with a smaller scene. They agree with
+/// nothing.
+bool only_one_computed(const compare::Comparison& comparison);
+
 /// Runs both models on a case, or on one each, and compares.
 /// @param multibody_case  of the multibody model where it is another one: what would a wrong input
 ///                        do? Must have the same pistons, samples and revolutions.
