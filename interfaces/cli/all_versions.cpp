@@ -3,6 +3,7 @@
 
 #include "bentaxis/designs/versions.h"
 #include "bentaxis/engines/run.h"
+#include "bentaxis/pump/lists.h"
 #include "ranks.h"
 #include "versions.h"
 
@@ -24,9 +25,7 @@ std::string optional_parts() {
     return found->second;
   };
   const std::string ceres = version("Ceres");
-  std::string engines;
-  for (const std::string& name : engines::installed_engines())
-    engines += (engines.empty() ? "" : " and ") + name;
+  const std::string engines = joined(engines::installed_engines(), " and ");
   return (ceres == "none" ? "Ceres none" : ceres) + ", HDF5 " + version("HDF5") + ", MPI " +
          mpi_library() + ", OpenTURNS " + version("OpenTURNS") + ", search " + version("search") +
          ", engines " + (engines.empty() ? "none" : engines) + ", Python module " BENTAXIS_PYTHON;

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/words.h"
 #include "data_folder.h"
@@ -354,7 +355,7 @@ bool ProgramParser::parse(int argc, char** argv) {
     std::string argument = argv[i];
     options_end = options_end || argument == "--";
     const auto below = commands_of(*command);
-    if (std::find(below.begin(), below.end(), argument) != below.end()) {
+    if (contains(below, argument)) {
       command = command->get_subcommand(argument);
       name += (name.empty() ? "" : " ") + argument;
     } else if (!options_end) {

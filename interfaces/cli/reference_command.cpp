@@ -7,6 +7,7 @@
 #include "bentaxis/files/kept_case.h"
 #include "bentaxis/files/whole_file.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/study/reference_maker.h"
 #include "commands.h"
 #include "console.h"
@@ -39,17 +40,13 @@ int make_new(const ReferenceOptions& options) {
     proposals = study::proposal_text(guess) + std::to_string(guess.recognised()) + " of " +
                 std::to_string(guess.recognised() + guess.ignored.size()) + " columns recognised\n";
     description = study::description_of(guess, options.source, options.tolerance);
-    if (options.accept && !guess.unrecognised.empty()) {
-      std::string names;
-      for (const std::string& name : guess.unrecognised)
-        names += (names.empty() ? "\"" : ", \"") + name + "\"";
+    if (options.accept && !guess.unrecognised.empty())
       throw InputError(
-          options.from + ": " + names +
+          options.from + ": \"" + joined(guess.unrecognised, "\", \"") + "\"" +
           (guess.unrecognised.size() > 1 ? ": these columns are" : ": this column is") +
           " not recognised, although the names or sizes say a channel: --accept takes "
           "no such guess. Run the command without --accept, edit the proposal and "
           "give it by --mapping");
-    }
     if (!options.accept) {
       const fs::path proposal = out.parent_path() / (out.filename().string() + "_mapping.toml");
       if (fs::exists(proposal))

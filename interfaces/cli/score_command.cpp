@@ -1,10 +1,10 @@
-#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
 
 #include "bentaxis/files/whole_file.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/words.h"
 #include "commands.h"
 #include "data_folder.h"
@@ -28,7 +28,7 @@ study::Problem problem_of(const std::string& text) {
   const auto folder = shipped_problems();
   if (!folder) throw InputError("no problems are installed with this program: name a folder");
   const auto names = study::problem_names(*folder);
-  if (std::find(names.begin(), names.end(), text) == names.end())
+  if (!contains(names, text))
     throw InputError("--problem " + text + ": neither a directory nor a problem that is shipped" +
                      suggestion(text, {names.begin(), names.end()}, "by `bentaxis problems`"));
   return study::read_problem(*folder / text);

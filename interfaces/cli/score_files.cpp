@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "bentaxis/pump/lists.h"
+
 namespace bentaxis::cli {
 namespace {
 
@@ -28,9 +30,7 @@ double margin(const study::ProblemColumn& column, double tolerance) {
 }
 
 std::string names(const study::Problem& problem, const std::vector<std::size_t>& columns) {
-  std::string text;
-  for (const std::size_t c : columns) text += (text.empty() ? "" : ", ") + problem.columns[c].name;
-  return text;
+  return joined(columns, ", ", [&](std::size_t c) { return problem.columns[c].name; });
 }
 
 std::string mistake_text(const study::Problem& problem, const study::NamedMistake& mistake) {

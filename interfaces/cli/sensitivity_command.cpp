@@ -4,6 +4,7 @@
 
 #include "bentaxis/designs/sensitivity_document.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "commands.h"
 #include "console.h"
 #include "options.h"
@@ -28,9 +29,7 @@ int sensitivity(const SensitivityOptions& options) {
   const Case base = options.the_case.read();
   std::vector<designs::Output> outputs;
   for (const std::string& name : options.outputs.empty() ? kOutputs : options.outputs)
-    if (const auto wanted = designs::output(name, base);
-        std::find(outputs.begin(), outputs.end(), wanted) == outputs.end())
-      outputs.push_back(wanted);
+    add_once(outputs, designs::output(name, base));
   std::vector<designs::Variable> variables;
   for (const std::string& name : options.parameters)
     if (std::none_of(variables.begin(), variables.end(),

@@ -7,6 +7,7 @@
 
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/words.h"
 
 namespace bentaxis::cli {
@@ -61,8 +62,7 @@ std::string case_file(const std::string& text, const std::optional<fs::path>& fo
   if (folder && fs::exists(*folder / "studies" / (text + kEnding), error))
     return (*folder / "studies" / (text + kEnding)).string();
   const std::vector<std::string> names = case_names(folder);
-  if (std::find(names.begin(), names.end(), text) != names.end())
-    return (*folder / (text + kEnding)).string();
+  if (contains(names, text)) return (*folder / (text + kEnding)).string();
   if (names.empty()) return text;
   throw InputError(text + ": neither a file nor a shipped case" +
                    suggestion(text, {names.begin(), names.end()}, "by `bentaxis cases`"));

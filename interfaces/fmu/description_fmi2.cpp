@@ -1,6 +1,7 @@
 // The description of FMI 2.0: a list of scalar variables, named by their place in it.
 #include <algorithm>
 
+#include "bentaxis/pump/lists.h"
 #include "description_parts.h"
 
 namespace bentaxis::fmu {
@@ -65,9 +66,8 @@ void add_structure(pugi::xml_node root, const Description& description) {
   add_list(structure, "Derivatives", variables, depend.running,
            [](const Variable& variable) { return variable.role == Role::derivative; });
   const auto unknowns = initial_unknowns(variables);
-  add_list(structure, "InitialUnknowns", variables, depend.initial, [&](const Variable& variable) {
-    return std::find(unknowns.begin(), unknowns.end(), &variable) != unknowns.end();
-  });
+  add_list(structure, "InitialUnknowns", variables, depend.initial,
+           [&](const Variable& variable) { return contains(unknowns, &variable); });
 }
 
 }  // namespace

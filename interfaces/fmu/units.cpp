@@ -4,6 +4,8 @@
 #include <cctype>
 #include <stdexcept>
 
+#include "bentaxis/pump/lists.h"
+
 namespace bentaxis::fmu {
 
 std::string type_name(const UnitOfMeasure& unit) {
@@ -24,9 +26,7 @@ std::vector<const UnitOfMeasure*> unit_definitions(const std::vector<std::string
   std::vector<const UnitOfMeasure*> needed;
   for (const std::string& unit : units) {
     const UnitOfMeasure* definition = unit_definition(unit);
-    if (definition != nullptr &&
-        std::find(needed.begin(), needed.end(), definition) == needed.end())
-      needed.push_back(definition);
+    if (definition != nullptr) add_once(needed, definition);
   }
   return needed;
 }

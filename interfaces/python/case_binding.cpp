@@ -6,6 +6,7 @@
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/validate.h"
 #include "bentaxis/pump/words.h"
 #include "bentaxis/study/plausibility.h"
@@ -52,11 +53,7 @@ void write(const Case& the_case, const fs::path& file) {
 
 std::string range_text(const Parameter& parameter) {
   if (!parameter.range_words.empty()) return parameter.range_words;
-  if (!parameter.words.empty()) {
-    std::string words;
-    for (const std::string& word : parameter.words) words += (words.empty() ? "" : ", ") + word;
-    return "one of " + words;
-  }
+  if (!parameter.words.empty()) return "one of " + joined(parameter.words);
   return parameter.range.text();
 }
 

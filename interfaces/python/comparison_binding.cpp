@@ -1,9 +1,9 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <algorithm>
 #include <map>
 
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/study/assumptions.h"
 #include "bentaxis/study/comparison.h"
 #include "bentaxis/study/comparison_document.h"
@@ -31,8 +31,7 @@ struct Comparison {
 std::vector<std::string> implausible(const Case& first, const std::optional<Case>& second) {
   std::vector<std::string> texts = plausibility_texts(first);
   if (!second) return texts;
-  for (const std::string& text : plausibility_texts(*second))
-    if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+  for (const std::string& text : plausibility_texts(*second)) add_once(texts, text);
   return texts;
 }
 

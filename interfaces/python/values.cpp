@@ -6,6 +6,7 @@
 
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 
 namespace bentaxis::python {
@@ -88,12 +89,11 @@ std::string toml_of(const py::handle& value, const std::string& what) {
   if (is_flag(value))
     return py::cast<bool>(py::bool_(py::reinterpret_borrow<py::object>(value))) ? "true" : "false";
   if (is_path(value)) return toml_text(py::cast<std::filesystem::path>(value).string());
-  if (is_list(value)) {
-    std::string list;
-    for (const py::handle one : py::reinterpret_borrow<py::object>(value))
-      list += (list.empty() ? "" : ", ") + toml_of(one, what);
-    return "[" + list + "]";
-  }
+  if (is_list(value))
+    return "[" +
+           joined(py::reinterpret_borrow<py::object>(value), ", ",
+                  [&](const py::handle& one) { return toml_of(one, what); }) +
+           "]";
   if (is_number(value)) return number_of(value);
   throw InputError(what + ": must be a number, a text, a bool or a list of them, not " +
                    type_of(value));

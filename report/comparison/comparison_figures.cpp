@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/budget.h"
 
@@ -37,15 +38,14 @@ std::vector<report::Figure> channel_figures(const std::vector<const ResultTable*
   add("rb2", "Cylindrical bearing force Rb2 on the shaft at C2, in S1", "Fig. 29", "N",
       {"Rb2_x1_N", "Rb2_y1_N"});
   add("td", "Drive torque Td", "Fig. 17, 30", "Nm", {"Td_z1_Nm"});
-  std::string means;
+  std::vector<std::string> means;
   for (const ResultTable* table : tables) {
     double mean = 0;
     for (std::size_t row = 0; row < table->rows(); ++row)
       mean += table->at(row, table->find("Td_z1_Nm")) / static_cast<double>(table->rows());
-    if (is_computed(mean))
-      means += fmt::format("{}{} {:.5g} Nm", means.empty() ? "" : ", ", table->name, mean);
+    if (is_computed(mean)) means.push_back(fmt::format("{} {:.5g} Nm", table->name, mean));
   }
-  figures.back().note = "Mean torque: " + means + ".";
+  figures.back().note = "Mean torque: " + joined(means) + ".";
 
   const auto has = [](const ResultTable& table, const char* name) {
     const std::size_t column = table.find(name);
@@ -98,9 +98,8 @@ bool shows(const report::Figure& figure, const std::vector<Channel>& channels) {
   const auto* curves = std::get_if<report::ChannelFigure>(&figure.content);
   const auto* bars = std::get_if<report::PistonBars>(&figure.content);
   const auto& names = curves != nullptr ? curves->channels : bars->channels;
-  return std::any_of(channels.begin(), channels.end(), [&](const Channel& channel) {
-    return std::find(names.begin(), names.end(), channel.name) != names.end();
-  });
+  return std::any_of(channels.begin(), channels.end(),
+                     [&](const Channel& channel) { return contains(names, channel.name); });
 }
 
 }  // namespace

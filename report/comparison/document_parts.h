@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bentaxis/files/csv_rows.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/plausibility_section.h"
 
@@ -33,11 +33,7 @@ inline report::Document case_document(const CaseDescription& description, std::s
 namespace bentaxis::report {
 
 /// Puts items behind those of a part of a document, which is there from then on.
-template <class Item>
-void append(std::vector<Item>& list, std::vector<Item> more) {
-  list.insert(list.end(), std::make_move_iterator(more.begin()),
-              std::make_move_iterator(more.end()));
-}
+using bentaxis::append;
 template <class Item>
 void append(std::optional<std::vector<Item>>& list, std::vector<Item> more) {
   if (!list) list.emplace();
@@ -59,9 +55,6 @@ inline void add_both(Curves& curves, const std::string& name, const Values& firs
   curves.difference.emplace_back(name, std::move(difference));
 }
 
-/// "a, b, c".
-inline std::string joined(const std::vector<std::string>& parts, const char* between = ", ") {
-  return fmt::format("{}", fmt::join(parts, between));
-}
+using bentaxis::joined;
 
 }  // namespace bentaxis::report

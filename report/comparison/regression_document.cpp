@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/study/comparison_answers.h"
 #include "bentaxis/study/reference_curves.h"
 
@@ -52,9 +53,8 @@ report::Curves curves_of(const Outcome& outcome, const std::string& model,
   const std::vector<double>& theta = outcome.held.at(model).result.theta_deg;
   for (const auto& [name, held] : outcome.held)
     if (held.result.theta_deg == theta)
-      results.push_back(select_channels(held.result, [&](const Channel& channel) {
-        return std::find(channels.begin(), channels.end(), channel.name) != channels.end();
-      }));
+      results.push_back(select_channels(
+          held.result, [&](const Channel& channel) { return contains(channels, channel.name); }));
   report::Curves curves = report::curves_of(results.front(), results.back());
   if (results.size() == 1) {
     curves.tables.resize(1);
@@ -137,10 +137,9 @@ std::optional<report::Section> explanation_section(const std::vector<Outcome>& o
     for (const auto* list : {&found.left_out, &found.singles, &found.pairs})
       for (const ExplainingChange& change : *list)
         for (const auto& p : change.parameters)
-          section.table.rows.push_back({outcome.name, p.name, p.from, p.to, p.unit, change.share,
-                                        change.rest_over_peak, change.rest_channel,
-                                        &change == found.cause() ? "yes" : "no",
-                                        fmt::format("{}", fmt::join(p.look_same, ", "))});
+          section.table.rows.push_back(
+              {outcome.name, p.name, p.from, p.to, p.unit, change.share, change.rest_over_peak,
+               change.rest_channel, &change == found.cause() ? "yes" : "no", joined(p.look_same)});
   }
   if (!any) return std::nullopt;
   return section;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "bentaxis/analytic/teeth.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/teeth.h"
@@ -156,10 +157,8 @@ std::vector<report::Figure> teeth_figures(const TeethComparison& teeth,
     content.curves = curves;
     // Only what the figure shows.
     const auto keep = [&](auto& columns) {
-      std::erase_if(columns, [&](const auto& column) {
-        return std::find(content.channels.begin(), content.channels.end(), column.first) ==
-               content.channels.end();
-      });
+      std::erase_if(columns,
+                    [&](const auto& column) { return !contains(content.channels, column.first); });
     };
     for (auto& table : content.curves->tables) keep(table.columns);
     keep(content.curves->difference);

@@ -65,10 +65,11 @@ report::Section methods_section(const DisplacementStudy& study) {
       rows.push_back({name_of(derived.method), meter.meter});
       if (is_computed(derived.volume)) {
         const FlowPoint& highest = meter.points[derived.highest];
-        report::append(rows.back(), {derived.volume / kCubicCentimetre, 100 * derived.bias,
-                                     static_cast<long>(derived.above_one),
-                                     percent(derived.efficiency[derived.highest]),
-                                     speed_rpm(highest), delivery_bar(highest)});
+        report::append(rows.back(), std::vector<report::Cell>{
+                                        derived.volume / kCubicCentimetre, 100 * derived.bias,
+                                        static_cast<long>(derived.above_one),
+                                        percent(derived.efficiency[derived.highest]),
+                                        speed_rpm(highest), delivery_bar(highest)});
       } else {
         section.facts.emplace_back(std::string(name_of(derived.method)) + ", " + meter.meter,
                                    "not determined: " + derived.reason);
@@ -157,22 +158,21 @@ report::Figure bias_figure(const DisplacementStudy& study) {
 
 std::vector<std::string> displacement_answers(const DisplacementStudy& study) {
   const MeteredDisplacement& meter = study.meters.at(0);
-  std::string values, above;
+  std::vector<std::string> values, above;
   for (const DerivedDisplacement& derived : meter.derived) {
     if (!is_computed(derived.volume)) continue;
-    values +=
-        fmt::format("{}{} {:.5g} cm3 ({})", values.empty() ? "" : ", ", name_of(derived.method),
-                    derived.volume / kCubicCentimetre, bias_text(derived));
+    values.push_back(fmt::format("{} {:.5g} cm3 ({})", name_of(derived.method),
+                                 derived.volume / kCubicCentimetre, bias_text(derived)));
     if (derived.above_one > 0)
-      above += fmt::format("{}by {} at {} of {} points (up to {:.2f} % at {})",
-                           above.empty() ? "" : "; ", name_of(derived.method), derived.above_one,
-                           meter.points.size(), 100 * derived.efficiency[derived.highest],
-                           place_of(meter.points[derived.highest]));
+      above.push_back(fmt::format("by {} at {} of {} points (up to {:.2f} % at {})",
+                                  name_of(derived.method), derived.above_one, meter.points.size(),
+                                  100 * derived.efficiency[derived.highest],
+                                  place_of(meter.points[derived.highest])));
   }
   return {fmt::format("Derived displacement, flow {}: {}; the geometric one is {:.5g} cm3.",
-                      meter.meter, values, study.geometric / kCubicCentimetre),
+                      meter.meter, joined(values), study.geometric / kCubicCentimetre),
           above.empty() ? std::string("No method gives a volumetric efficiency above 100 %.")
-                        : "The volumetric efficiency exceeds 100 % " + above + "."};
+                        : "The volumetric efficiency exceeds 100 % " + joined(above, "; ") + "."};
 }
 
 void add_displacement(report::Document& document, const DisplacementStudy& study) {

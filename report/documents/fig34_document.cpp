@@ -44,9 +44,7 @@ std::string value_text(const Parameter& of, double value) {
 
 std::vector<double> values_of(const Fig34Study& s, const Parameter& of) {
   std::vector<double> values;
-  for (const Fig34Point& point : s.points)
-    if (std::find(values.begin(), values.end(), point.*of.member) == values.end())
-      values.push_back(point.*of.member);
+  for (const Fig34Point& point : s.points) add_once(values, point.*of.member);
   return values;
 }
 
@@ -163,17 +161,17 @@ Lines about(const Fig34Study& s, bool drag) {
   lines.push_back(out.empty() ? "No value and no pair of values of the grid is ruled out."
                               : "What none of them has:");
   for (const std::string& line : out) lines.push_back("- " + line);
-  std::string open;
+  Lines open;
   for (const Parameter& of : parameters()) {
-    std::string values;
+    Lines values;
     for (const double value : values_of(s, of))
       if (count(s, [&](const Fig34Point& p) {
             return p.drag == drag && p.*of.member == value;
           }).both > 0)
-        values += (values.empty() ? "" : ", ") + number_of(of, value);
-    open += fmt::format("{}{} {}{}", open.empty() ? "" : "; ", of.name, values, of.unit);
+        values.push_back(number_of(of, value));
+    open.push_back(fmt::format("{} {}{}", of.name, joined(values), of.unit));
   }
-  lines.push_back("What some of them have: " + open + ".");
+  lines.push_back("What some of them have: " + joined(open, "; ") + ".");
   return lines;
 }
 

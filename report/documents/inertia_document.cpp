@@ -206,7 +206,7 @@ report::Table error_table(const std::vector<InertiaRun>& runs, const Names& grou
       {}};
   for (const InertiaRun& run : runs)
     for (const auto& error : lumping_errors(run, InertiaStudy::loaded(runs, run.speed_rpm)))
-      if (std::find(groups.begin(), groups.end(), error.group) != groups.end())
+      if (contains(groups, error.group))
         table.rows.push_back({fmt::format("{} ({})", error.group, error.unit), error.speed_rpm,
                               load_name(error.loaded), error.analytic, error.multibody, error.peak,
                               error.loaded_peak, 100 * error.fraction()});
@@ -305,17 +305,17 @@ std::string headline(const InertiaStudy& s) {
     return fmt::format("{:.2g} % of its loaded peak ({:.3g} {} at {})", 100 * error.fraction(),
                        error.analytic, error.unit, rpm(error.speed_rpm));
   };
-  std::string missed;
+  std::vector<std::string> missed;
   const LumpingError* largest = nullptr;  // of those within the limit
   for (const auto& [group, error] : worst) {
     if (error.fraction() > kTwoMassesDo)
-      missed += fmt::format("{}{}: off by {}", missed.empty() ? "" : "; ", group, of_peak(error));
+      missed.push_back(fmt::format("{}: off by {}", group, of_peak(error)));
     else if (largest == nullptr || error.fraction() > largest->fraction())
       largest = &error;
   }
-  std::string text = missed.empty()
-                         ? "Two point masses are accurate enough"
-                         : fmt::format("Two point masses are not accurate enough for {}", missed);
+  std::string text = missed.empty() ? "Two point masses are accurate enough"
+                                    : fmt::format("Two point masses are not accurate enough for {}",
+                                                  joined(missed, "; "));
   if (largest != nullptr)
     text += fmt::format("{}: {} is off by {}, the rest by less",
                         missed.empty() ? "" : ". They are for the others", largest->group,

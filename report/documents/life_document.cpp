@@ -39,9 +39,8 @@ std::string hours_text(double hours) { return is_computed(hours) ? digits(hours)
 // Of what part of the duty cycle the lives are, where that is not all of it.
 std::string part_text(const LifeStudy& s) {
   if (s.failed.empty()) return "";
-  std::string rows;
-  for (const study::FailedPoint& f : s.failed)
-    rows += (rows.empty() ? "" : ", ") + fmt::format("{:g}", f.value);
+  const std::string rows = joined(
+      s.failed, ", ", [](const study::FailedPoint& f) { return fmt::format("{:g}", f.value); });
   return fmt::format(
       "NOT the life under the whole duty cycle: row{} {} could not be computed. The other rows "
       "alone: ",

@@ -1,11 +1,11 @@
 // The paper's figures as a report, as CSV and as text.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "answers_text.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/text.h"
 #include "bentaxis/study/paper_figures.h"
 #include "document_parts.h"
 #include "paper_drawings.h"
@@ -15,7 +15,10 @@ namespace {
 
 using report::Cell;
 
-std::string unit_after(const std::string& unit) { return unit.empty() ? "" : " " + unit; }
+// Adds a part that a text does not have yet.
+void add_part(std::string& text, const std::string& part, const char* separator = "; ") {
+  if (text.find(part) == std::string::npos) text += (text.empty() ? "" : separator) + part;
+}
 
 std::string range_text(const DrawnPanel& p) {
   return fmt::format("{:.5g} to {:.5g}{}", p.least.y, p.greatest.y, unit_after(p.panel.y.unit));
@@ -23,18 +26,18 @@ std::string range_text(const DrawnPanel& p) {
 
 // By how much the curves leave the axis, where; "" where they do not.
 std::string leaving(const DrawnPanel& p) {
-  std::string text;
-  if (!p.known()) return text;
+  if (!p.known()) return {};
+  std::vector<std::string> texts;
   const double span = p.panel.y.range->second - p.panel.y.range->first;
   const auto add = [&](double by, const DrawnPanel::End& end, const char* where) {
     if (by == 0) return;
-    text += fmt::format("{}{} {} the axis by {:.3g}{}, {:.2g} % of its length, at {:.4g}{}",
-                        text.empty() ? "" : "; ", end.curve, where, by, unit_after(p.panel.y.unit),
-                        100 * by / span, end.x, unit_after(p.panel.x.unit));
+    texts.push_back(fmt::format("{} {} the axis by {:.3g}{}, {:.2g} % of its length, at {:.4g}{}",
+                                end.curve, where, by, unit_after(p.panel.y.unit), 100 * by / span,
+                                end.x, unit_after(p.panel.x.unit)));
   };
   add(p.below(), p.least, "is below");
   add(p.above(), p.greatest, "is above");
-  return text;
+  return joined(texts, "; ");
 }
 
 std::string verdict(const DrawnPanel& p) {
@@ -44,31 +47,24 @@ std::string verdict(const DrawnPanel& p) {
 // Condition of each curve of a panel, once.
 std::string conditions_of(const PaperFigures& list, const DrawnPanel& p) {
   std::string text;
-  const auto add = [&](const std::string& part) {
-    if (!part.empty() && text.find(part) == std::string::npos)
-      text += (text.empty() ? "" : "; ") + part;
-  };
   for (const PaperCurve& curve : p.panel.curves)
     for (const auto& condition : list.numbers.conditions)
-      if (condition.name == curve.condition) add(condition.text);
-  for (const PaperCurve& curve : p.panel.curves) add(list.numbers.variant(curve.variant).text);
+      if (condition.name == curve.condition) add_part(text, condition.text);
+  for (const PaperCurve& curve : p.panel.curves)
+    add_part(text, list.numbers.variant(curve.variant).text);
   return text;
 }
 
 std::string names_of_conditions(const DrawnPanel& p) {
   std::string text;
-  for (const PaperCurve& curve : p.panel.curves)
-    if (text.find(curve.condition) == std::string::npos)
-      text += (text.empty() ? "" : "; ") + curve.condition;
+  for (const PaperCurve& curve : p.panel.curves) add_part(text, curve.condition);
   return text;
 }
 
 std::string cases_of(const PaperFigures& list, const DrawnPanel& p) {
   std::string text;
-  for (const PaperCurve& curve : p.panel.curves) {
-    const std::string& file = list.case_of(curve.condition).file;
-    if (text.find(file) == std::string::npos) text += (text.empty() ? "" : ", ") + file;
-  }
+  for (const PaperCurve& curve : p.panel.curves)
+    add_part(text, list.case_of(curve.condition).file, ", ");
   return text;
 }
 
@@ -92,17 +88,17 @@ PanelCount count(const PaperStudy& s) {
 
 std::string headline(const PaperStudy& s) {
   const PanelCount c = count(s);
-  std::string outside;
+  std::vector<std::string> outside;
   compare::Difference worst;
   for (const DrawnPanel& p : s.panels) {
-    if (p.known() && !p.inside()) outside += (outside.empty() ? "" : "; ") + p.figure.name(p.panel);
+    if (p.known() && !p.inside()) outside.push_back(p.figure.name(p.panel));
     worst.keep_larger(other_model(p));
   }
   return fmt::format(
       "{} of {} panels with a known axis contain our curves{}; {} axes are unknown; "
       "drawings have none. At the same assumptions the models differ by up to {} of peak.",
-      c.inside, c.known, outside.empty() ? "" : " (outside: " + outside + ")", c.unknown,
-      worst.share_text());
+      c.inside, c.known, outside.empty() ? "" : " (outside: " + joined(outside, "; ") + ")",
+      c.unknown, worst.share_text());
 }
 
 // Each curve that leaves its axis, and where the numbers printed with them stand.

@@ -60,12 +60,12 @@ double turns_of(int parts) { return static_cast<double>(parts) / kPartsOfTurn; }
 
 std::string headline(const RattleMap& map) {
   const auto counts = counts_of(map, &RattleRow::up);
-  std::string text;
+  std::vector<std::string> classes;
   for (std::size_t k = 0; k < counts.size(); ++k)
     if (counts[k] > 0)
-      text +=
-          fmt::format("{}{} at {}", text.empty() ? "" : ", ", rattle_class_names()[k], counts[k]);
-  text += fmt::format(" of {} points", map.rows.size() * map.options.speed_rpm.size());
+      classes.push_back(fmt::format("{} at {}", rattle_class_names()[k], counts[k]));
+  std::string text = fmt::format("{} of {} points", joined(classes),
+                                 map.rows.size() * map.options.speed_rpm.size());
   if (const auto failed = std::accumulate(
           map.rows.begin(), map.rows.end(), std::ptrdiff_t{0},
           [](std::ptrdiff_t sum, const RattleRow& row) {

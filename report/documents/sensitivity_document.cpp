@@ -63,17 +63,17 @@ Section outputs_section(const Sensitivities& s) {
 // Of these the case says nothing: a parameter that they take their value from moves them as well,
 // so that the same edge, say, has a row of its own under either name.
 std::string followers_text(const Sensitivities& s) {
-  std::string names;
+  std::vector<std::string> names;
   const Family family(s.base, {});
   for (const Family::Follower& follower : family.followers()) {
     const std::string name = follower.table->name + "." + follower.parameter->key;
     const bool there = std::any_of(s.variables.begin(), s.variables.end(), [&](const Variable& v) {
       return v.name() == name || v.name() == name + ".1" || v.name() == name + ".2";
     });
-    if (there) names += (names.empty() ? "" : ", ") + name;
+    if (there) names.push_back(name);
   }
   if (names.empty()) return {};
-  return "The case does not give " + names +
+  return "The case does not give " + joined(names) +
          ": the value is that of another parameter. The row of that parameter changes both, the "
          "row of these changes them alone; do not add the two.";
 }

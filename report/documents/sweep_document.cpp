@@ -46,10 +46,7 @@ std::string values_text(const Varied& varied) {
   if (levels.size() > 8)
     return fmt::format("{} .. {}, {} values", value_text(variable, levels.front()),
                        value_text(variable, levels.back()), levels.size());
-  std::string text;
-  for (const double level : levels)
-    text += (text.empty() ? "" : ", ") + value_text(variable, level);
-  return text;
+  return joined(levels, ", ", [&](double level) { return value_text(variable, level); });
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "sweep_view.h"
 
@@ -81,13 +82,12 @@ class Figures {
 
   // What the others are while `shown` vary.
   std::string others_text(const std::vector<std::size_t>& shown) const {
-    std::string text;
-    for (const std::size_t k : varied_) {
-      if (std::find(shown.begin(), shown.end(), k) != shown.end()) continue;
-      text += (text.empty() ? "At " : ", ") + view_.variable(k).name() + " " +
-              value_text(view_.variable(k), view_.levels(k)[view_.home()[k]]);
-    }
-    return text.empty() ? "" : text + ", nearest to the value of the case. ";
+    std::vector<std::string> others;
+    for (const std::size_t k : varied_)
+      if (!contains(shown, k))
+        others.push_back(view_.variable(k).name() + " " +
+                         value_text(view_.variable(k), view_.levels(k)[view_.home()[k]]));
+    return others.empty() ? "" : "At " + joined(others) + ", nearest to the value of the case. ";
   }
 
   static std::string limit_text(std::size_t shown, std::size_t all, const char* what) {

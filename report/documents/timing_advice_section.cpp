@@ -39,10 +39,9 @@ void add_advice(report::Document& document, const TimingStudy& study) {
       continue;
     }
     const TimingChange& c = *advice.change;
-    section.table.rows.push_back({advice.row.quantity, c.variable.name(), c.from, c.to,
-                                  c.value_before, c.value_after, advice.row.unit,
-                                  c.within ? "yes" : "no", c.efficiency_change,
-                                  fmt::format("{}", fmt::join(c.worse, ", "))});
+    section.table.rows.push_back(
+        {advice.row.quantity, c.variable.name(), c.from, c.to, c.value_before, c.value_after,
+         advice.row.unit, c.within ? "yes" : "no", c.efficiency_change, report::joined(c.worse)});
   }
   report::append(document.runs, std::move(section));
 }

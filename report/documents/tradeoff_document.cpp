@@ -132,7 +132,7 @@ std::vector<report::Record> records(const TradeoffStudy& study) {
       for (const Column& column : columns()) row.emplace_back(column.key, column.cell(run));
       row.back().second = run.done() ? "done" : "failed";
       row.emplace_back("reason", run.done() ? Cell() : Cell(run.failure));
-      row.emplace_back("on_front", std::find(front.begin(), front.end(), i) != front.end());
+      row.emplace_back("on_front", contains(front, i));
       rows.push_back(std::move(row));
     }
   }

@@ -5,6 +5,7 @@
 
 #include "bentaxis/fmu/slave.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "channel.h"
 #include "process_slave.h"
 #include "supervisor.h"
@@ -12,12 +13,6 @@
 
 namespace bentaxis::fmu {
 namespace {
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
 
 // Whether this machine can run it.
 std::filesystem::path library_of(const std::filesystem::path& file, const Unpacked& unpacked,

@@ -14,6 +14,7 @@
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "process/remove_tree.h"
 
 namespace bentaxis::fmu {
@@ -113,9 +114,7 @@ void Unpacked::unpack(const fs::path& file, std::uint64_t most) {
     if (constexpr std::string_view kBinaries = "binaries/"; name.rfind(kBinaries, 0) == 0) {
       const std::string platform =
           name.substr(kBinaries.size(), name.find('/', kBinaries.size()) - kBinaries.size());
-      if (!platform.empty() &&
-          std::find(platforms_.begin(), platforms_.end(), platform) == platforms_.end())
-        platforms_.push_back(platform);
+      if (!platform.empty()) add_once(platforms_, platform);
     }
     if (name.back() == '/' || !is_needed(name)) continue;
     const std::unique_ptr<zip_file_t, Close> in(

@@ -3,12 +3,12 @@
 // alone. Internal.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <initializer_list>
 #include <string>
 #include <vector>
 
+#include "bentaxis/pump/lists.h"
 #include "instance.h"
 
 namespace bentaxis::fmu {
@@ -20,7 +20,7 @@ inline constexpr unsigned kSetDiscrete = kInstantiated | kInitialization | kEven
 
 /// @throws Refused where there are values and one of the places is null
 inline void require_places(std::size_t count, std::initializer_list<const void*> places) {
-  if (count > 0 && std::find(places.begin(), places.end(), nullptr) != places.end())
+  if (count > 0 && contains(places, nullptr))
     throw Refused("a null pointer where values should be");
 }
 inline void require_place(const void* place) { require_places(1, {place}); }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "bentaxis/coupled/open_system.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/time_signal.h"
 #include "bentaxis/pump/unit_of_measure.h"
 #include "bentaxis/pump/units.h"
@@ -98,7 +99,7 @@ std::vector<OutputPlace> output_places(const Machine& machine, bool si) {
   std::vector<std::string> names;
   const auto add = [&](PlantColumn column, OutputPlace::From from, std::size_t index, double unit) {
     // What is a channel too is not shown twice.
-    if (std::find(names.begin(), names.end(), column.name) != names.end()) return;
+    if (contains(names, column.name)) return;
     names.push_back(column.name);
     places.push_back({std::move(column), from, index, unit});
   };

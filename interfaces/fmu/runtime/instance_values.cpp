@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/registry.h"
 #include "bentaxis/pump/units.h"
@@ -69,8 +70,7 @@ bool Instance::flag(Reference reference) {
 }
 
 void Instance::require_intermediate(const Variable& it, bool set) const {
-  const auto& listed = stepping_.intermediate;
-  if (std::find(listed.begin(), listed.end(), it.reference) == listed.end())
+  if (!contains(stepping_.intermediate, it.reference))
     throw Refused(it.name + " is not one of the intermediate variables of this instance");
   if (set && !may_set_)
     throw Refused(it.name + " cannot be set now: intermediateVariableSetRequested is false");

@@ -1,8 +1,9 @@
 #include "log.h"
 
-#include <algorithm>
 #include <array>
 #include <string_view>
+
+#include "bentaxis/pump/lists.h"
 
 namespace bentaxis::fmu {
 namespace {
@@ -33,8 +34,7 @@ const char* category_of(Status status) {
 bool Log::set_debug(bool on, const std::vector<std::string>& categories) {
   bool events = categories.empty();
   for (const std::string& category : categories) {
-    if (std::find(kCategories.begin(), kCategories.end(), category) == kCategories.end())
-      return false;
+    if (!contains(kCategories, category)) return false;
     events = events || category == kEvents || category == kAll;
   }
   debug_ = on;
