@@ -41,11 +41,12 @@ std::string curve_text(const Case& the_case, const hydraulics::SteadyState& stat
 }  // namespace
 
 report::Section hydraulic_section(const Case& the_case, const hydraulics::SteadyState& state) {
-  report::Section section;
-  section.title = "Hydraulic model";
-  section.text =
+  report::Section section{
+      "Hydraulic model",
       "Chamber pressures from mass balances (docs/hydraulics.md), as the periodic steady state. "
-      "Both mechanical models use the same curve.";
+      "Both mechanical models use the same curve.",
+      {},
+      {{"quantity", "value", "unit"}, {}}};
   const auto& convergence = state.convergence;
   section.facts = {
       {"curve that both models use", curve_text(the_case, state)},
@@ -54,7 +55,6 @@ report::Section hydraulic_section(const Case& the_case, const hydraulics::Steady
       {"change of ln P from period to period", fmt::format("{:.1e}", convergence.residual)},
       {"error of ln P allowed per step", fmt::format("{:g}", convergence.tolerance)},
       {"steps of CVODES in all", std::to_string(convergence.steps)}};
-  section.table.columns = {"quantity", "value", "unit"};
   for (const auto& line : hydraulics::lines(state))
     section.table.rows.push_back({line.name, line.value, line.unit});
   return section;

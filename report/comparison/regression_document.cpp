@@ -93,9 +93,7 @@ std::vector<report::Figure> held_figures(const std::vector<Outcome>& outcomes) {
 }
 
 report::Section notes_section(const std::vector<Outcome>& outcomes) {
-  report::Section section;
-  section.title = "Missing curves and notes";
-  section.table.columns = {"note"};
+  report::Section section{"Missing curves and notes", "", {}, {{"note"}, {}}};
   for (const auto& line : missing_lines(outcomes)) section.table.rows.push_back({line});
   for (const auto& outcome : outcomes)
     for (const auto& note : outcome.notes)
@@ -106,9 +104,8 @@ report::Section notes_section(const std::vector<Outcome>& outcomes) {
 }  // namespace
 
 report::Section source_section(const Outcome& outcome) {
-  report::Section section;
-  section.title = fmt::format("{} ({})", outcome.name, outcome.kind);
-  section.text = held_text(outcome);
+  report::Section section{
+      fmt::format("{} ({})", outcome.name, outcome.kind), held_text(outcome), {}, {}};
   for (auto [name, value] : outcome.properties) {
     std::replace(name.begin(), name.end(), '_', ' ');
     section.facts.emplace_back(name, value);
@@ -118,16 +115,16 @@ report::Section source_section(const Outcome& outcome) {
 }
 
 std::optional<report::Section> explanation_section(const std::vector<Outcome>& outcomes) {
-  report::Section section;
-  section.title = "What would explain the difference";
-  section.text =
+  report::Section section{
+      "What would explain the difference",
       "Parameters of the case, each changed alone or two together, until the analytic results are "
       "nearest to the reference, or left out as a whole (friction, weight, mass of the pistons); "
       "computed again with them. Share: of the sum of squared "
-      "differences, each over the peak of its reaction.";
-  section.table.columns = {
-      "case",  "parameter",    "in the case", "nearest",  "unit",
-      "share", "rest of peak", "rest in",     "explains", "not to be told apart"};
+      "differences, each over the peak of its reaction.",
+      {},
+      {{"case", "parameter", "in the case", "nearest", "unit", "share", "rest of peak", "rest in",
+        "explains", "not to be told apart"},
+       {}}};
   bool any = false;
   for (const Outcome& outcome : outcomes) {
     if (!outcome.explanation) continue;

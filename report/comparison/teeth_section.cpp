@@ -86,12 +86,15 @@ report::ScatterSeries path_of(const ResultTable& table, const PumpParameters& pu
 
 report::Section teeth_section(const TeethComparison& teeth, const PumpParameters& pump) {
   const ToothData& data = *pump.gear.teeth;
-  report::Section section;
-  section.title = "Teeth in contact";
-  section.text =
+  report::Section section{
+      "Teeth in contact",
       "Forces of the tooth pairs in static equilibrium under the torque that drives the block: "
       "flank + pushes the block towards +psi, flank - towards -psi. Each model computes contact "
-      "and load shares independently.";
+      "and load shares independently.",
+      {},
+      {{"furthest apart", "peak of its kind", "unit", "difference", "of peak", "verdict",
+        "its own peak"},
+       {}}};
   const Extent error = extent(teeth.analytic, "transmission_error_um");
   const analytic::BevelTeeth shape(pump);
   const analytic::BevelGeometry& at = shape.geometry();
@@ -125,8 +128,6 @@ report::Section teeth_section(const TeethComparison& teeth, const PumpParameters
       section.facts.emplace_back(
           fmt::format("{} {} under load", pairs, pairs == 1 ? "pair" : "pairs"),
           fmt::format("{:.3g} % of the turn", 100 * share));
-  section.table.columns = {"furthest apart", "peak of its kind", "unit",        "difference",
-                           "of peak",        "verdict",          "its own peak"};
   // The worst of each group: what differs before what does not.
   const auto beyond = [](const compare::ChannelComparison& line) {
     return std::pair{line.verdict == compare::Verdict::differs, line.largest_over_peak()};

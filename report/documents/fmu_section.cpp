@@ -38,20 +38,21 @@ std::string drive_in_words(const UnitCoupling& coupling) {
 report::Section coupling_section(const SimulationResult& r) {
   const UnitCoupling& coupling = *r.choice.unit;
   const fmu::UnitDescription& unit = coupling.unit().description();
-  report::Section section;
-  section.title = "Coupling to an FMU";
-  section.text =
+  report::Section section{
+      "Coupling to an FMU",
       "A Functional Mock-up Unit acts on the pump: it receives values of the pump at every "
       "communication point, and its outputs are held until the next. Each model has its own "
       "instance. The change is the difference from a run with half the communication step; because "
       "the error is proportional to the step, twice the change is the estimated error of the "
-      "results shown.";
-  section.facts = {
-      {"FMU", fmt::format("{}: {}, FMI {}.0{}", coupling.unit().file().filename().string(),
-                          unit.model_name, unit.version,
-                          unit.tool.empty() ? "" : ", made by " + unit.tool)},
-      {"communication step", fmt::format("{:.6g} s", coupling.step())},
-      {"what turns the shaft", drive_in_words(coupling)}};
+      "results shown.",
+      {{"FMU", fmt::format("{}: {}, FMI {}.0{}", coupling.unit().file().filename().string(),
+                           unit.model_name, unit.version,
+                           unit.tool.empty() ? "" : ", made by " + unit.tool)},
+       {"communication step", fmt::format("{:.6g} s", coupling.step())},
+       {"what turns the shaft", drive_in_words(coupling)}},
+      {{"group", "unit", "peak", "change at half the step, of peak", "at, s",
+        "estimated error, of peak"},
+       {}}};
   for (const auto& [variable, value] : coupling.parameters())
     section.facts.emplace_back(
         "parameter " + variable.name,
@@ -67,9 +68,6 @@ report::Section coupling_section(const SimulationResult& r) {
   const std::vector<std::string> said = coupling.log();
   for (std::size_t i = 0; i < said.size() && i < kMaxLines; ++i)
     section.facts.emplace_back("message of the FMU", said[i]);
-  section.table.columns = {"group", "unit",
-                           "peak",  "change at half the step, of peak",
-                           "at, s", "estimated error, of peak"};
   for (const CouplingChange& change : r.coupling)
     section.table.rows.push_back(
         {change.group, change.unit, change.peak, change.change, change.time_s, change.error()});

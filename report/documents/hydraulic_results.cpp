@@ -83,13 +83,14 @@ report::Figure orders_figure(const std::string& id, const std::string& title,
 
 report::Section power_section(const Case& the_case, const SteadyState& state,
                               const PowerBudget& power) {
-  report::Section section;
-  section.title = "Power and losses by place";
-  section.text =
+  report::Section section{
+      "Power and losses by place",
       "Means over a turn, all chambers. What flows from one pressure to another loses the mass "
       "flow times the difference of the oil's pressure potential, the integral of dP/density; "
       "compression returns the energy that it takes. The residual is the sources less all other "
-      "rows.";
+      "rows.",
+      {},
+      {{"place", "what", "mean power, W", "of the pistons' power, %"}, {}}};
   const double indicated =
       state.indicated_work * the_case.pump.geometry.pistons * turns_per_second(the_case);
   section.facts = {
@@ -101,7 +102,6 @@ report::Section power_section(const Case& the_case, const SteadyState& state,
        fmt::format("{:.6g} J", state.indicated_work)},
       {"that of all chambers x speed over the pistons' power, less 1",
        fmt::format("{:.1e}", share(power, indicated) - 1)}};
-  section.table.columns = {"place", "what", "mean power, W", "of the pistons' power, %"};
   const auto add = [&](const std::string& place, const std::string& what, double watts) {
     section.table.rows.push_back({place, what, watts, 100 * share(power, watts)});
   };
@@ -116,14 +116,13 @@ report::Section efficiency_section(const OperatingPoint& point, const PowerBudge
   const hydraulics::PumpPower oil = hydraulics::pump_power(power);
   const double omega = rad_per_second(point.the_case().operation.speed_rpm);
   const double torques[] = {mean(point.analytic, "Td_z1_Nm"), mean(point.multibody, "Td_z1_Nm")};
-  report::Section section;
-  section.title = "Power and efficiency of the pump";
-  section.text =
+  report::Section section{
+      "Power and efficiency of the pump",
       "Means over a turn. The power to the load is carried by the oil out through the delivery "
       "port less in through the suction port: mass flow x pressure potential, with the work of "
-      "compression (docs/budgets.md).";
-  section.table.columns = {"quantity", "unit", point.analytic.name, point.multibody.name,
-                           "definition"};
+      "compression (docs/budgets.md).",
+      {},
+      {{"quantity", "unit", point.analytic.name, point.multibody.name, "definition"}, {}}};
   const auto watts = [&](const char* name, double analytic, double multibody, const char* text) {
     section.table.rows.push_back({name, "W", analytic, multibody, text});
   };
@@ -142,18 +141,15 @@ report::Section efficiency_section(const OperatingPoint& point, const PowerBudge
 }
 
 report::Section orders_section(const Case& the_case, const SteadyState& state) {
-  report::Section section;
-  section.title = "Orders";
-  section.text =
+  report::Section section{
+      "Orders",
       "Amplitudes of harmonics of the shaft's angle. The outlet has multiples of the number of "
-      "pistons only; dp/dtheta of a chamber has all, which orders.csv lists.";
-  section.table.columns = {"order",
-                           "frequency, Hz",
-                           "flow to the load, l/min",
-                           "of its mean, %",
-                           "delivery pressure, bar",
-                           "pressure in front of the load, bar",
-                           "dp/dtheta of a chamber, bar/deg"};
+      "pistons only; dp/dtheta of a chamber has all, which orders.csv lists.",
+      {},
+      {{"order", "frequency, Hz", "flow to the load, l/min", "of its mean, %",
+        "delivery pressure, bar", "pressure in front of the load, bar",
+        "dp/dtheta of a chamber, bar/deg"},
+       {}}};
   const auto rate = hydraulics::orders_of_rate(*state.computed, state.orders.back().order);
   const auto& s = state.summary;
   for (const auto& order : state.orders)

@@ -88,19 +88,16 @@ void add_curve(report::Document& document, const TorqueCurve& curve) {
              curve.flow_at_delivery);
   document.figures->push_back(std::move(torque));
   document.figures->push_back(std::move(flow));
-  report::Section section;
-  section.title = "Torque and flow against delivery pressure";
-  section.text =
+  report::Section section{
+      "Torque and flow against delivery pressure",
       "Each point: periodic hydraulic state, then both models over a turn. 0 bar is an open line. "
       "The flow and the volumetric efficiency are at the density in the suction port, the last "
-      "column at that of the mean delivery pressure.";
-  section.table.columns = {"delivery, bar",
-                           "mean torque, analytic, Nm",
-                           "mean torque, multibody, Nm",
-                           "ideal torque, Nm",
-                           "flow, l/min",
-                           "volumetric efficiency, %",
-                           "flow at delivery pressure, l/min"};
+      "column at that of the mean delivery pressure.",
+      {},
+      {{"delivery, bar", "mean torque, analytic, Nm", "mean torque, multibody, Nm",
+        "ideal torque, Nm", "flow, l/min", "volumetric efficiency, %",
+        "flow at delivery pressure, l/min"},
+       {}}};
   for (std::size_t i = 0; i < curve.bar.size(); ++i)
     section.table.rows.push_back({curve.bar[i], curve.analytic[i], curve.multibody[i],
                                   curve.ideal[i], curve.flow[i], curve.efficiency[i],
