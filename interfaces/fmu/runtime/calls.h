@@ -25,6 +25,13 @@ inline void require_places(std::size_t count, std::initializer_list<const void*>
 }
 inline void require_place(const void* place) { require_places(1, {place}); }
 
+/// All variables are scalars.
+inline void require_scalars(std::size_t count, std::size_t value_count) {
+  if (count != value_count)
+    throw Refused("there must be one value per variable: " + std::to_string(count) + ", not " +
+                  std::to_string(value_count));
+}
+
 /// Calls of an instance that is given as a pointer; `error` is the status of one that is null.
 template <class AnyStatus, AnyStatus error>
 struct Calls {
@@ -45,6 +52,18 @@ struct Calls {
     Instance& it = *static_cast<Instance*>(c);
     if (it.call(function, kAny, [&] { it.require(kind); }) != Status::ok) return error;
     return call(c, function, modes, body);
+  }
+
+  /// `does` the values of variables, to or from the importer.
+  template <class Value, class Does>
+  static AnyStatus values(void* c, const char* function, unsigned modes,
+                          const Instance::Reference vr[], std::size_t count, Value* values,
+                          std::size_t value_count, Does does) noexcept {
+    return call(c, function, modes, [&](Instance& it) {
+      require_places(count, {vr, values});
+      require_scalars(count, value_count);
+      (it.*does)(vr, count, values);
+    });
   }
 
   /// Of types that no variable has.
@@ -82,6 +101,22 @@ struct Calls {
 };
 
 }  // namespace bentaxis::fmu
+
+// The functions of a version by the types of its header, and its `call` and `numbers`.
+#define BENTAXIS_DECLARE(name) name##TYPE name;
+#define BENTAXIS_CALLS(fmi, FUNCTIONS)                          \
+  extern "C" {                                                  \
+  FUNCTIONS(BENTAXIS_DECLARE)                                   \
+  }                                                             \
+  using Fmi = bentaxis::fmu::Calls<fmi##Status, fmi##Error>;    \
+  template <class... Arguments>                                 \
+  static fmi##Status call(Arguments... arguments) noexcept {    \
+    return Fmi::call(arguments...);                             \
+  }                                                             \
+  template <class... Arguments>                                 \
+  static fmi##Status numbers(Arguments... arguments) noexcept { \
+    return Fmi::numbers(arguments...);                          \
+  }
 
 // The functions that both versions have under the same names behind `fmi2` and `fmi3`. They use
 // `call` and `numbers` of the version.

@@ -7,32 +7,11 @@
 #include "calls.h"
 #include "instance.h"
 
-extern "C" {
-#define BENTAXIS_DECLARE(name) name##TYPE name;
-BENTAXIS_FMI2_FUNCTIONS(BENTAXIS_DECLARE)
-#undef BENTAXIS_DECLARE
-}
+BENTAXIS_CALLS(fmi2, BENTAXIS_FMI2_FUNCTIONS)
 
 namespace {
 
-using bentaxis::fmu::Instance;
-using bentaxis::fmu::kAny;
-using bentaxis::fmu::kContinuous;
-using bentaxis::fmu::kEvent;
-using bentaxis::fmu::kGet;
-using bentaxis::fmu::kInitialization;
-using bentaxis::fmu::kInstantiated;
-using bentaxis::fmu::kKnown;
-using bentaxis::fmu::kRunning;
-using bentaxis::fmu::kSet;
-using bentaxis::fmu::kSetDiscrete;
-using bentaxis::fmu::kStep;
-using bentaxis::fmu::kTerminated;
-using bentaxis::fmu::Log;
-using bentaxis::fmu::Refused;
-using bentaxis::fmu::require_place;
-using bentaxis::fmu::require_places;
-using bentaxis::fmu::Status;
+using namespace bentaxis::fmu;
 using Kind = Instance::Kind;
 
 // Messages are formats, in which #r3# is a variable.
@@ -47,22 +26,12 @@ std::string as_format(const std::string& text) {
 
 Log::Sink sink_of(const fmi2CallbackFunctions& functions, const std::string& name) {
   if (functions.logger == nullptr) return {};
-  return [logger = functions.logger, environment = functions.componentEnvironment,
-          name = bentaxis::fmu::shown(name, 1000)](Status status, const char* category,
-                                                   const std::string& message) {
-    logger(environment, name.c_str(), static_cast<fmi2Status>(status), category,
-           as_format(message).c_str());
-  };
-}
-
-using Version = bentaxis::fmu::Calls<fmi2Status, fmi2Error>;
-template <class... Arguments>
-fmi2Status call(Arguments... arguments) noexcept {
-  return Version::call(arguments...);
-}
-template <class... Arguments>
-fmi2Status numbers(Arguments... arguments) noexcept {
-  return Version::numbers(arguments...);
+  return
+      [logger = functions.logger, environment = functions.componentEnvironment,
+       name = shown(name, 1000)](Status status, const char* category, const std::string& message) {
+        logger(environment, name.c_str(), static_cast<fmi2Status>(status), category,
+               as_format(message).c_str());
+      };
 }
 
 }  // namespace
@@ -83,7 +52,7 @@ fmi2Component fmi2Instantiate(fmi2String instance_name, fmi2Type type, fmi2Strin
       if (resource_location == nullptr) throw Refused("the location of resources is missing");
       if (type != fmi2ModelExchange && type != fmi2CoSimulation)
         throw Refused("the kind must be model exchange or co-simulation");
-      return new Instance(bentaxis::fmu::path_of_uri(resource_location), guid,
+      return new Instance(path_of_uri(resource_location), guid,
                           type == fmi2CoSimulation ? Kind::co_simulation : Kind::model_exchange,
                           log);
     } catch (const std::exception& error) {
@@ -98,7 +67,7 @@ void fmi2FreeInstance(fmi2Component c) { delete static_cast<Instance*>(c); }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count,
                                const fmi2String categories[]) {
-  return Version::set_debug_logging(c, __func__, on != fmi2False, count, categories);
+  return Fmi::set_debug_logging(c, __func__, on != fmi2False, count, categories);
 }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, fmi2Real tolerance,
@@ -118,47 +87,36 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                        fmi2Real value[]) {
-  return call(c, __func__, kGet, [&](Instance& it) {
-    require_places(count, {vr, value});
-    it.numbers(vr, count, value);
-  });
+  return Fmi::values(c, __func__, kGet, vr, count, value, count, &Instance::numbers);
 }
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                           fmi2Boolean value[]) {
-  return call(c, __func__, kGet, [&](Instance& it) {
-    require_places(count, {vr, value});
-    it.flags(vr, count, value);
-  });
+  return Fmi::values(c, __func__, kGet, vr, count, value, count, &Instance::flags<fmi2Boolean>);
 }
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                           fmi2Integer /*value*/[]) {
-  return Version::no_values(c, __func__, kGet, vr, count, "Integer");
+  return Fmi::no_values(c, __func__, kGet, vr, count, "Integer");
 }
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                          fmi2String /*value*/[]) {
-  return Version::no_values(c, __func__, kGet, vr, count, "String");
+  return Fmi::no_values(c, __func__, kGet, vr, count, "String");
 }
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                        const fmi2Real value[]) {
-  return call(c, __func__, kSet, [&](Instance& it) {
-    require_places(count, {vr, value});
-    it.set_numbers(vr, count, value);
-  });
+  return Fmi::values(c, __func__, kSet, vr, count, value, count, &Instance::set_numbers);
 }
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                           const fmi2Integer /*value*/[]) {
-  return Version::no_values(c, __func__, kSetDiscrete, vr, count, "Integer");
+  return Fmi::no_values(c, __func__, kSetDiscrete, vr, count, "Integer");
 }
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                           const fmi2Boolean value[]) {
-  return call(c, __func__, kSetDiscrete, [&](Instance& it) {
-    require_places(count, {vr, value});
-    it.set_flags(vr, count, value);
-  });
+  return Fmi::values(c, __func__, kSetDiscrete, vr, count, value, count,
+                     &Instance::set_flags<fmi2Boolean>);
 }
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                          const fmi2String /*value*/[]) {
-  return Version::no_values(c, __func__, kSetDiscrete, vr, count, "String");
+  return Fmi::no_values(c, __func__, kSetDiscrete, vr, count, "String");
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[],
@@ -231,12 +189,11 @@ fmi2Status fmi2GetStatus(fmi2Component c, fmi2StatusKind kind, fmi2Status* value
   });
 }
 fmi2Status fmi2GetRealStatus(fmi2Component c, fmi2StatusKind kind, fmi2Real* value) {
-  return call(c, __func__, Kind::co_simulation, kStep | kTerminated | bentaxis::fmu::kFailed,
-              [&](Instance& it) {
-                require_place(value);
-                if (kind != fmi2LastSuccessfulTime) throw Refused("of this kind there is no real");
-                *value = it.last_time();
-              });
+  return call(c, __func__, Kind::co_simulation, kStep | kTerminated | kFailed, [&](Instance& it) {
+    require_place(value);
+    if (kind != fmi2LastSuccessfulTime) throw Refused("of this kind there is no real");
+    *value = it.last_time();
+  });
 }
 fmi2Status fmi2GetIntegerStatus(fmi2Component c, fmi2StatusKind /*kind*/, fmi2Integer* /*value*/) {
   return call(c, __func__, Kind::co_simulation, kAny,

@@ -6,51 +6,12 @@
 #include "calls.h"
 #include "instance.h"
 
-extern "C" {
-#define BENTAXIS_DECLARE(name) name##TYPE name;
-BENTAXIS_FMI3_FUNCTIONS(BENTAXIS_DECLARE)
-#undef BENTAXIS_DECLARE
-}
+BENTAXIS_CALLS(fmi3, BENTAXIS_FMI3_FUNCTIONS)
 
 namespace {
 
-using bentaxis::fmu::Instance;
-using bentaxis::fmu::kAny;
-using bentaxis::fmu::kContinuous;
-using bentaxis::fmu::kEvent;
-using bentaxis::fmu::kGet;
-using bentaxis::fmu::kInitialization;
-using bentaxis::fmu::kInstantiated;
-using bentaxis::fmu::kIntermediate;
-using bentaxis::fmu::kKnown;
-using bentaxis::fmu::kRunning;
-using bentaxis::fmu::kSet;
-using bentaxis::fmu::kSetDiscrete;
-using bentaxis::fmu::kStep;
-using bentaxis::fmu::Log;
-using bentaxis::fmu::Refused;
-using bentaxis::fmu::require_place;
-using bentaxis::fmu::require_places;
-using bentaxis::fmu::Status;
-using bentaxis::fmu::Stepping;
+using namespace bentaxis::fmu;
 using Kind = Instance::Kind;
-
-// All variables are scalars.
-void require_scalars(std::size_t count, std::size_t value_count) {
-  if (count != value_count)
-    throw Refused("there must be one value per variable: " + std::to_string(count) + ", not " +
-                  std::to_string(value_count));
-}
-
-using Version = bentaxis::fmu::Calls<fmi3Status, fmi3Error>;
-template <class... Arguments>
-fmi3Status call(Arguments... arguments) noexcept {
-  return Version::call(arguments...);
-}
-template <class... Arguments>
-fmi3Status numbers(Arguments... arguments) noexcept {
-  return Version::numbers(arguments...);
-}
 
 fmi3Status refuse(fmi3Instance c, const char* function, const char* why) noexcept {
   return call(c, function, kAny, [&](Instance& /*it*/) { throw Refused(why); });
@@ -79,8 +40,7 @@ fmi3Instance instantiate(const char* function, fmi3String name, fmi3String token
       if (name == nullptr || *name == 0) throw Refused("the instance needs a name");
       if (token == nullptr) throw Refused("the instantiation token is missing");
       if (path == nullptr) throw Refused("the path of resources is missing");
-      return new Instance(bentaxis::fmu::path_of_text(path), token, kind, log,
-                          stepping ? stepping() : Stepping{});
+      return new Instance(path_of_text(path), token, kind, log, stepping ? stepping() : Stepping{});
     } catch (const std::exception& error) {
       log.say(Status::error, std::string(function) + ": " + error.what());
     }
@@ -95,7 +55,7 @@ const char* fmi3GetVersion() { return fmi3Version; }
 
 fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean on, size_t count,
                                const fmi3String categories[]) {
-  return Version::set_debug_logging(instance, __func__, on, count, categories);
+  return Fmi::set_debug_logging(instance, __func__, on, count, categories);
 }
 
 fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token,
@@ -164,46 +124,34 @@ fmi3Status fmi3EnterEventMode(fmi3Instance instance) {
 
 fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                           fmi3Float64 values[], size_t value_count) {
-  return call(instance, __func__, kGet | kIntermediate, [&](Instance& it) {
-    require_places(count, {vr, values});
-    require_scalars(count, value_count);
-    it.numbers(vr, count, values);
-  });
+  return Fmi::values(instance, __func__, kGet | kIntermediate, vr, count, values, value_count,
+                     &Instance::numbers);
 }
 fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                           const fmi3Float64 values[], size_t value_count) {
-  return call(instance, __func__, kSet | kIntermediate, [&](Instance& it) {
-    require_places(count, {vr, values});
-    require_scalars(count, value_count);
-    it.set_numbers(vr, count, values);
-  });
+  return Fmi::values(instance, __func__, kSet | kIntermediate, vr, count, values, value_count,
+                     &Instance::set_numbers);
 }
 fmi3Status fmi3GetBoolean(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                           fmi3Boolean values[], size_t value_count) {
-  return call(instance, __func__, kGet, [&](Instance& it) {
-    require_places(count, {vr, values});
-    require_scalars(count, value_count);
-    it.flags(vr, count, values);
-  });
+  return Fmi::values(instance, __func__, kGet, vr, count, values, value_count,
+                     &Instance::flags<fmi3Boolean>);
 }
 fmi3Status fmi3SetBoolean(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                           const fmi3Boolean values[], size_t value_count) {
-  return call(instance, __func__, kSetDiscrete, [&](Instance& it) {
-    require_places(count, {vr, values});
-    require_scalars(count, value_count);
-    it.set_flags(vr, count, values);
-  });
+  return Fmi::values(instance, __func__, kSetDiscrete, vr, count, values, value_count,
+                     &Instance::set_flags<fmi3Boolean>);
 }
 
 // Types that no variable has.
 #define BENTAXIS_NO_TYPE(Type)                                                                 \
   fmi3Status fmi3Get##Type(fmi3Instance instance, const fmi3ValueReference vr[], size_t count, \
                            fmi3##Type /*values*/[], size_t /*value_count*/) {                  \
-    return Version::no_values(instance, __func__, kGet, vr, count, #Type);                     \
+    return Fmi::no_values(instance, __func__, kGet, vr, count, #Type);                         \
   }                                                                                            \
   fmi3Status fmi3Set##Type(fmi3Instance instance, const fmi3ValueReference vr[], size_t count, \
                            const fmi3##Type /*values*/[], size_t /*value_count*/) {            \
-    return Version::no_values(instance, __func__, kSetDiscrete, vr, count, #Type);             \
+    return Fmi::no_values(instance, __func__, kSetDiscrete, vr, count, #Type);                 \
   }
 BENTAXIS_NO_TYPE(Float32)
 BENTAXIS_NO_TYPE(Int8)
@@ -218,20 +166,20 @@ BENTAXIS_NO_TYPE(String)
 #undef BENTAXIS_NO_TYPE
 fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                          size_t /*sizes*/[], fmi3Binary /*values*/[], size_t /*value_count*/) {
-  return Version::no_values(instance, __func__, kGet, vr, count, "Binary");
+  return Fmi::no_values(instance, __func__, kGet, vr, count, "Binary");
 }
 fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                          const size_t /*sizes*/[], const fmi3Binary /*values*/[],
                          size_t /*value_count*/) {
-  return Version::no_values(instance, __func__, kSetDiscrete, vr, count, "Binary");
+  return Fmi::no_values(instance, __func__, kSetDiscrete, vr, count, "Binary");
 }
 fmi3Status fmi3GetClock(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                         fmi3Clock /*values*/[]) {
-  return Version::no_values(instance, __func__, kGet, vr, count, "Clock");
+  return Fmi::no_values(instance, __func__, kGet, vr, count, "Clock");
 }
 fmi3Status fmi3SetClock(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                         const fmi3Clock /*values*/[]) {
-  return Version::no_values(instance, __func__, kSetDiscrete, vr, count, "Clock");
+  return Fmi::no_values(instance, __func__, kSetDiscrete, vr, count, "Clock");
 }
 
 fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance instance, fmi3ValueReference /*vr*/,
