@@ -212,4 +212,11 @@ std::vector<fs::path> OutputFolder::commit(const std::string& record, const Name
   return paths;
 }
 
+void write_file(const fs::path& file, const std::string& content) {
+  const fs::path path = fs::absolute(file);
+  OutputFolder folder(path.parent_path());
+  folder.add(path.filename(), content);
+  folder.commit();
+}
+
 }  // namespace bentaxis

@@ -44,13 +44,6 @@ ExitStatus status_of(study::Outcome::State state) {
   return kComputationFailed;
 }
 
-void write(const std::string& file, const std::string& content) {
-  const fs::path path = fs::absolute(file);
-  OutputFolder folder(path.parent_path());
-  folder.add(path.filename(), content);
-  folder.commit();
-}
-
 int regress(const RegressOptions& options) {
   const auto shipped = shipped_reference_data();
   if (options.folder.empty() && !shipped)
@@ -89,7 +82,7 @@ int regress(const RegressOptions& options) {
   std::vector<report::TestSuite> suites;
   for (const auto& outcome : outcomes) suites.push_back(study::suite_of(outcome));
   const std::string junit = report::junit_xml("bentaxis regress", suites);
-  if (!options.junit.empty()) write(options.junit, junit);
+  if (!options.junit.empty()) write_file(options.junit, junit);
   if (options.html.empty() && options.json.empty() && options.place.figures.empty() && !folders)
     return status;
   const std::string name = fs::absolute(root / ".").parent_path().filename();
@@ -100,8 +93,8 @@ int regress(const RegressOptions& options) {
   add_provenance(document);
   for (const std::string& file : {options.html, options.json})
     if (!file.empty()) document.files.push_back(fs::path(file).filename());
-  if (!options.html.empty()) write(options.html, report::render_page(document));
-  if (!options.json.empty()) write(options.json, report::json_text(document));
+  if (!options.html.empty()) write_file(options.html, report::render_page(document));
+  if (!options.json.empty()) write_file(options.json, report::json_text(document));
   if (!options.place.figures.empty() && !folders) {
     OutputFolder folder(options.place.figures);
     add_figure_files(folder, document);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bentaxis/files/csv.h"
+#include "bentaxis/pump/lists.h"
 
 namespace bentaxis::cli {
 std::vector<TextFile> comparison_files(const study::ComparisonResult& result) {
@@ -25,8 +26,7 @@ std::vector<TextFile> comparison_files(const study::ComparisonResult& result) {
     curves.push_back(csv_file("teeth_analytic.csv", result.teeth->analytic));
     curves.push_back(csv_file("teeth_multibody.csv", result.teeth->multibody));
   }
-  if (result.engines)
-    for (TextFile& file : engine_files(*result.engines)) curves.push_back(std::move(file));
+  if (result.engines) append(curves, engine_files(*result.engines));
   return curves;
 }
 

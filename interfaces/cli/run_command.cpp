@@ -4,6 +4,7 @@
 
 #include "bentaxis/files/csv.h"
 #include "bentaxis/files/output_folder.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/study/lost_digits.h"
 #include "bentaxis/study/row_stream.h"
 #include "bentaxis/study/run.h"
@@ -30,10 +31,6 @@ struct RunCommandOptions {
 void warn(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings)
     std::fprintf(stderr, "bentaxis: warning: %s\n", warning.c_str());
-}
-
-void append_all(std::vector<std::string>& answers, std::vector<std::string> more) {
-  for (std::string& answer : more) answers.push_back(std::move(answer));
 }
 
 // What was found, then the files.
@@ -134,11 +131,11 @@ int run(const RunCommandOptions& options) {
         },
         progress_of);
     answers = summary.answers();
-    append_all(answers, transfer.answers());
+    append(answers, transfer.answers());
   } else {
     const study::ModelRun result = study::run(ready, run_options, progress_of);
     answers = study::TurnSummary(result.table).answers();
-    append_all(answers, study::TransferSummary(ready.the_case.pump, result.table).answers());
+    append(answers, study::TransferSummary(ready.the_case.pump, result.table).answers());
     if (!result.choice.empty()) std::fprintf(stderr, "chosen %s\n", result.choice.c_str());
     const std::string name = to_string(options.model);
     folder.add(name + ".csv", to_csv(select_channels(result.table, wanted)));
@@ -146,8 +143,8 @@ int run(const RunCommandOptions& options) {
   }
   if (std::string play = study::free_play_answer(ready.the_case.pump); !play.empty())
     answers.push_back(std::move(play));
-  append_all(answers, study::limit_answers(
-                          study::limits_of_turn(ready.the_case, assumptions, ready.pressure)));
+  append(answers,
+         study::limit_answers(study::limits_of_turn(ready.the_case, assumptions, ready.pressure)));
   if (ready.hydraulics)
     answers.push_back(study::timing_answer(study::timing_rows(ready.the_case, *ready.hydraulics)));
   return finish(folder, ready.the_case.name, answers);

@@ -30,10 +30,7 @@ struct ShowOptions {
 };
 
 void write_picture(const Case& the_case, const std::string& file) {
-  const fs::path path = fs::absolute(file);
-  OutputFolder folder(path.parent_path());
-  folder.add(path.filename(), study::pump_picture(the_case));
-  folder.commit();
+  write_file(file, study::pump_picture(the_case));
   std::printf("%s\n", file.c_str());
 }
 

@@ -4,6 +4,7 @@
 
 #include "bentaxis/designs/sweep_document.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "commands.h"
 #include "console.h"
@@ -75,10 +76,7 @@ designs::SweepRequest request_of(const PlanOptions& options, const CommandParser
   for (const auto& one : varied)
     std::erase_if(request.vary, [&](const auto& old) { return old.first == one.first; });
   // After those of the file are gone, so that an option given twice is refused as it is there.
-  request.vary.insert(request.vary.end(), varied.begin(), varied.end());
-  const auto append = [](std::vector<std::string>& to, const std::vector<std::string>& more) {
-    to.insert(to.end(), more.begin(), more.end());
-  };
+  append(request.vary, varied);
   append(request.outputs, given.outputs);
   append(request.minimise, given.minimise);
   append(request.maximise, given.maximise);

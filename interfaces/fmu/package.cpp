@@ -7,6 +7,7 @@
 #include "bentaxis/files/kept_case.h"
 #include "bentaxis/fmu/unit.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "dependencies.h"
@@ -144,8 +145,7 @@ std::string unit_archive(const Case& the_case, const UnitOptions& options) {
       files.push_back({"terminalsAndIcons/terminalsAndIcons.xml", std::move(terminals)});
   for (const PlatformLibrary& library : libraries)
     files.push_back({library.place, library.bytes, true});
-  if (options.sources)
-    for (ArchiveFile& file : source_files(options.version)) files.push_back(std::move(file));
+  if (options.sources) append(files, source_files(options.version));
   files.push_back({"resources/case.toml", kept.text});
   for (const KeptCase::Curve& curve : kept.curves)
     files.push_back({"resources/" + curve.name, curve.bytes});

@@ -44,13 +44,6 @@ py::object value_in(const PythonCase& the_case, const std::string& key) {
   return value ? python_of(*value) : py::none();
 }
 
-void write(const Case& the_case, const fs::path& file) {
-  const fs::path path = fs::absolute(file);
-  OutputFolder folder(path.parent_path());
-  folder.add(path.filename(), case_text(the_case));
-  folder.commit();
-}
-
 std::string range_text(const Parameter& parameter) {
   if (!parameter.range_words.empty()) return parameter.range_words;
   if (!parameter.words.empty()) return "one of " + joined(parameter.words);
@@ -109,7 +102,10 @@ void add_class(py::module_& module) {
           [](const PythonCase& self) { return study::plausibility(self.get()).summary(); },
           "The pump in a line: displacement, flow, torque, speed, pressure.")
       .def(
-          "write", [](const PythonCase& self, const fs::path& path) { write(self.get(), path); },
+          "write",
+          [](const PythonCase& self, const fs::path& path) {
+            write_file(path, case_text(self.get()));
+          },
           py::arg("path"), "Writes a case file; reading it gives the same case.")
       .def(
           "text", [](const PythonCase& self) { return case_text(self.get()); },

@@ -1,7 +1,6 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <map>
 #include <memory>
 
 #include "bentaxis/designs/optimise_document.h"
@@ -11,9 +10,9 @@
 #include "binding.h"
 #include "call.h"
 #include "choices.h"
+#include "designs_table.h"
 #include "python_case.h"
 #include "report.h"
-#include "table.h"
 #include "values.h"
 #include "words.h"
 
@@ -30,27 +29,11 @@ struct Optimisation : Table {
 };
 
 Optimisation shown(std::shared_ptr<const designs::Optimisation> found, const fs::path& file) {
-  Optimisation shown;
-  const designs::SweepPlan& plan = found->plan.designs;
-  const std::size_t n = plan.varied.size(), m = plan.outputs.size();
-  shown.name = "optimisation";
-  shown.rows = found->evaluated();
-  shown.first_is_index = false;
-  shown.first_of_block = n;
-  for (std::size_t i = 0; i < n; ++i) {
-    const designs::Variable& variable = plan.varied[i].variable;
-    shown.columns.push_back({variable.name(), variable.unit(), variable.meaning(),
-                             found->designs.values.data() + i, n});
-  }
-  for (std::size_t i = 0; i < m; ++i) {
-    const designs::Output& output = plan.outputs[i];
-    shown.columns.push_back(
-        {output.name, output.unit, output.meaning, found->measured.data() + i, m});
-  }
+  Optimisation shown{designs_table("optimisation", found->plan.designs, found->evaluated(),
+                                   found->designs.values.data(), found->measured.data()),
+                     found, file};
   shown.csv = [found] { return designs::evaluations_csv(*found); };
-  shown.owner = found;
-  shown.found = std::move(found);
-  shown.file = file;
+  shown.owner = std::move(found);
   return shown;
 }
 
@@ -106,13 +89,6 @@ Optimisation optimise(const PythonCase& the_case, const Variations& vary, const 
   return found;
 }
 
-std::map<std::size_t, std::string> infeasible_designs(const Optimisation& self) {
-  std::map<std::size_t, std::string> reasons;
-  for (const auto& [design, reason] : self.found->designs.infeasible)
-    reasons.emplace(design, in_python(reason));
-  return reasons;
-}
-
 std::vector<std::size_t> front(const Optimisation& self) {
   return designs::pareto_front(self.found->designs.results, self.found->plan.designs.direction);
 }
@@ -152,8 +128,9 @@ void add_optimisation(py::module_& module) {
           "The best design of each objective and a balanced one; empty where no design keeps all "
           "constraints.")
       .def_property_readonly("front", &front, "Rows of the Pareto front.")
-      .def_property_readonly("infeasible", &infeasible_designs,
-                             "Reasons why designs are infeasible or have no outputs, by row.")
+      .def_property_readonly(
+          "infeasible", [](const Optimisation& self) { return reasons_of(self.found->designs); },
+          "Reasons why designs are infeasible or have no outputs, by row.")
       .def_property_readonly(
           "headline", [](const Optimisation& self) { return designs::headline(*self.found); },
           "Summary in one line.")

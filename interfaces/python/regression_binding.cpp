@@ -72,10 +72,7 @@ void write_junit(const Regression& self, const fs::path& path) {
   unlocked([&](const study::PartProgress&) {
     std::vector<report::TestSuite> suites;
     for (const Outcome& outcome : *self.outcomes) suites.push_back(study::suite_of(outcome));
-    const fs::path file = fs::absolute(path);
-    OutputFolder folder(file.parent_path());
-    folder.add(file.filename(), report::junit_xml("bentaxis regress", suites));
-    folder.commit();
+    write_file(path, report::junit_xml("bentaxis regress", suites));
   });
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "bentaxis/designs/sweep_document.h"
 #include "bentaxis/designs/sweep_tables.h"
@@ -11,11 +10,10 @@
 #include "binding.h"
 #include "call.h"
 #include "choices.h"
+#include "designs_table.h"
 #include "python_case.h"
 #include "report.h"
-#include "table.h"
 #include "values.h"
-#include "words.h"
 
 namespace bentaxis::python {
 namespace {
@@ -28,25 +26,11 @@ struct Sweep : Table {
 };
 
 Sweep shown(std::shared_ptr<const designs::SweepResult> result) {
-  Sweep sweep;
-  const std::size_t n = result->plan.varied.size(), m = result->plan.outputs.size();
-  sweep.name = "sweep";
-  sweep.rows = result->designs;
-  sweep.first_is_index = false;
-  sweep.first_of_block = n;
-  for (std::size_t i = 0; i < n; ++i) {
-    const designs::Variable& variable = result->plan.varied[i].variable;
-    sweep.columns.push_back(
-        {variable.name(), variable.unit(), variable.meaning(), result->values.data() + i, n});
-  }
-  for (std::size_t i = 0; i < m; ++i) {
-    const designs::Output& output = result->plan.outputs[i];
-    sweep.columns.push_back(
-        {output.name, output.unit, output.meaning, result->results.data() + i, m});
-  }
+  Sweep sweep{designs_table("sweep", result->plan, result->designs, result->values.data(),
+                            result->results.data()),
+              result};
   sweep.csv = [result] { return designs::sweep_csv(*result); };
-  sweep.owner = result;
-  sweep.result = std::move(result);
+  sweep.owner = std::move(result);
   return sweep;
 }
 
@@ -85,13 +69,6 @@ Sweep sweep(const PythonCase& the_case, const Variations& vary, const Texts& out
   return swept;
 }
 
-std::map<std::size_t, std::string> infeasible(const Sweep& self) {
-  std::map<std::size_t, std::string> reasons;
-  for (const auto& [design, reason] : self.result->infeasible)
-    reasons.emplace(design, in_python(reason));
-  return reasons;
-}
-
 std::vector<std::filesystem::path> report_sweep(const Sweep& self,
                                                 const std::filesystem::path& folder) {
   return unlocked([&](const study::PartProgress& progress_of) {
@@ -120,8 +97,9 @@ void add_sweep(py::module_& module) {
       module, "Sweep",
       "A table of designs: parameters that vary, in the units of the case file, and outputs. A "
       "choice is the index of its word, from 0.")
-      .def_property_readonly("infeasible", &infeasible,
-                             "Reasons why designs have no outputs, by row.")
+      .def_property_readonly(
+          "infeasible", [](const Sweep& self) { return reasons_of(*self.result); },
+          "Reasons why designs have no outputs, by row.")
       .def_property_readonly(
           "checks", [](const Sweep& self) { return self.result->checks; },
           "Designs that were also computed by the other model.")

@@ -78,12 +78,7 @@ DataFrame to_pandas(const py::object& self) {
 }
 
 void write_csv(const Table& table, const std::filesystem::path& path) {
-  unlocked([&](const study::PartProgress&) {
-    const std::filesystem::path file = std::filesystem::absolute(path);
-    OutputFolder folder(file.parent_path());
-    folder.add(file.filename(), table.csv());
-    folder.commit();
-  });
+  unlocked([&](const study::PartProgress&) { write_file(path, table.csv()); });
 }
 
 void add_channel(py::module_& module) {

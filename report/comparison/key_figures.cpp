@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/transfer_summary.h"
 #include "bentaxis/study/turn_summary.h"
@@ -64,10 +65,6 @@ Row torque_row(const Summaries& summaries, const std::string& quantity, const st
   report::Values values;
   for (const TurnSummary& summary : summaries) values.push_back(number(summary.torque()));
   return key_row(quantity, "Td", unit, std::move(values));
-}
-
-void append(std::vector<Row>& rows, std::vector<Row> more) {
-  for (Row& row : more) rows.push_back(std::move(row));
 }
 
 }  // namespace

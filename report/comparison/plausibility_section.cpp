@@ -5,6 +5,7 @@
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/pump_picture.h"
 #include "bentaxis/study/pump_scene.h"
+#include "document_parts.h"
 
 namespace bentaxis::study {
 
@@ -21,12 +22,11 @@ void put_description(report::Document& document, const CaseDescription& descript
   document.plausibility = {looked.summary(), rows(looked.warnings), rows(looked.meant)};
   document.picture = pump_picture(description.the_case);
   document.scene = scene ? std::move(scene) : scene_of(description);
-  for (const FailedPoint& failed : description.failed) {
-    if (!document.warnings) document.warnings.emplace();
-    document.warnings->push_back(
-        {"description-incomplete",
-         failed.point + " could not be computed and is not shown: " + failed.reason});
-  }
+  for (const FailedPoint& failed : description.failed)
+    report::append(document.warnings,
+                   report::Warning{
+                       "description-incomplete",
+                       failed.point + " could not be computed and is not shown: " + failed.reason});
 }
 
 }  // namespace bentaxis::study

@@ -281,9 +281,7 @@ Section parameters_section(const UncertaintyResult& result) {
 
 void add_left_out(report::Document& document, const UncertaintyResult& result) {
   if (result.sampled.infeasible.empty()) return;
-  if (!document.runs) document.runs.emplace();
-  if (!document.warnings) document.warnings.emplace();
-  document.warnings->push_back({"Samples left out", left_out_text(result)});
+  report::append(document.warnings, report::Warning{"Samples left out", left_out_text(result)});
   std::map<std::string, long> counts;
   for (const auto& [index, reason] : result.sampled.infeasible) ++counts[reason];
   const auto without = static_cast<double>(result.sampled.infeasible.size());
@@ -300,7 +298,7 @@ void add_left_out(report::Document& document, const UncertaintyResult& result) {
     if (reasons.table.rows.size() < kMax) reasons.table.rows.push_back({reason, count});
   if (counts.size() > kMax)
     reasons.facts.emplace_back("reasons not listed", std::to_string(counts.size() - kMax));
-  document.runs->push_back(std::move(reasons));
+  report::append(document.runs, std::move(reasons));
 
   Section kept{
       "Parameters of the remaining samples",

@@ -83,7 +83,6 @@ class View {
   double width() const { return high_.x - low_.x; }
   double height() const { return high_.y - low_.y; }
   Point low() const { return low_; }
-  Point high() const { return high_; }
 
   // @param column  left edge of its words, px
   void place(double left, double middle, double px_per_m, double column) {
@@ -96,6 +95,11 @@ class View {
   Point on_paper(Point p) const { return {left_ + p.x * scale_, down_ - p.y * scale_}; }
 
   void line(const char* style, Point a, Point b) { path(style, {a, b}, false); }
+  // A cross about the origin.
+  void axes() {
+    line("axis", {-high_.y, 0}, {high_.y, 0});
+    line("axis", {0, -high_.y}, {0, high_.y});
+  }
   void path(const char* style, const std::vector<Point>& points, bool closed = true) {
     std::string d;
     for (const Point& p : points)
@@ -160,11 +164,7 @@ class Picture {
         p_(the_case.pump),
         g_(the_case.pump.geometry),
         derived_(analytic::derived_quantities(p_)),
-        o_(p_),
-        size_(o_.size),
-        block_from_(o_.block_from),
-        block_to_(o_.block_to),
-        block_radius_(o_.block_radius) {}
+        o_(p_) {}
 
   std::string svg() {
     make_room();
@@ -200,9 +200,6 @@ class Picture {
   }
 
  private:
-  double bore() const { return o_.bore; }
-  double ball() const { return o_.ball; }
-
   // Joint of a piston at chamber angle theta, seen along the block axis: x2, y2.
   Point joint(double theta) const {
     const auto [x, y] = o_.joint(theta);
@@ -212,43 +209,47 @@ class Picture {
   Point from_block(double z, double y) const {
     return {g_.axis_offset + o_.cosine * z - o_.sine * y, o_.sine * z + o_.cosine * y};
   }
-  bool is_far(double z) const { return o_.is_far(z); }
-  double gear_radius() const { return o_.gear_radius; }
-  bool gear_is_drawn() const { return o_.has_gear && !o_.is_far(gear_radius()); }
+  bool gear_is_drawn() const { return o_.has_gear && !o_.is_far(o_.gear_radius); }
 
   void make_room() {
-    const double flange = flange_radius();
     for (const double y : {-1.0, 1.0}) {
-      side_.room({-0.1 * size_, y * flange});
-      side_.room(from_block(block_from_, y * block_radius_));
-      side_.room(from_block(block_to_ + 0.5 * bore(), y * block_radius_));
+      side_.room({-0.1 * o_.size, y * o_.flange_radius});
+      side_.room(from_block(o_.block_from, y * o_.block_radius));
+      side_.room(from_block(o_.block_to + 0.5 * o_.bore, y * o_.block_radius));
     }
     // Bearings with their names.
-    const double below = -0.42 * g_.joint_circle_radius - 0.7 * size_;
+    const double below = -0.42 * g_.joint_circle_radius - 0.7 * o_.size;
     for (const double z : {p_.bearings.tapered_z, p_.bearings.cylindrical_z})
-      side_.room({(is_far(z) ? std::copysign(kFar * size_, z) : z) + std::copysign(0.36 * size_, z),
-                  is_far(z) ? 0 : below});
-    if (!is_far(p_.block.pin_z)) side_.room(from_block(p_.block.pin_z, 0));
+      side_.room(
+          {(o_.is_far(z) ? std::copysign(kFar * o_.size, z) : z) + std::copysign(0.36 * o_.size, z),
+           o_.is_far(z) ? 0 : below});
+    if (!o_.is_far(p_.block.pin_z)) side_.room(from_block(p_.block.pin_z, 0));
     if (gear_is_drawn())
       for (const double y : {-1.0, 1.0}) {
-        side_.room({gear_z(), y * gear_radius()});
-        side_.room(from_block(gear_radius() * std::tan(g_.tilt / 2), y * gear_radius()));
+        side_.room({o_.gear_z, y * o_.gear_radius});
+        side_.room(from_block(o_.gear_radius * std::tan(g_.tilt / 2), y * o_.gear_radius));
       }
-    const double joints_radius =
-        std::max({flange, gear_is_drawn() ? gear_radius() : 0, g_.joint_circle_radius + ball()});
+    const double joints_radius = std::max(
+        {o_.flange_radius, gear_is_drawn() ? o_.gear_radius : 0, g_.joint_circle_radius + o_.ball});
     square(joints_, joints_radius);
     double block_radius =
-        std::max({block_radius_, g_.bore_circle_radius + bore() / 2, g_.joint_circle_radius});
-    if (p_.port_plate && p_.port_plate->r4 < kFar * size_)
+        std::max({o_.block_radius, g_.bore_circle_radius + o_.bore / 2, g_.joint_circle_radius});
+    if (p_.port_plate && p_.port_plate->r4 < kFar * o_.size)
       block_radius = std::max(block_radius, p_.port_plate->r4);
     square(block_, block_radius);
+  }
+  // Above a view its title and its axes, below it lines of text.
+  void describe(View& v, const char* title, const char* axes,
+                const std::vector<std::string>& below) const {
+    v.paper(title, {v.column(), 20}, "title");
+    v.paper(axes, {v.column(), 36}, "small");
+    for (std::size_t i = 0; i < below.size(); ++i)
+      v.paper(below[i], {v.column(), bottom_ + (24 + 18 * static_cast<double>(i))});
   }
   static void square(View& view, double radius) {
     view.room({-radius, -radius});
     view.room({radius, radius});
   }
-  double flange_radius() const { return o_.flange_radius; }
-  double gear_z() const { return o_.gear_z; }
 
   void draw_side();
   void draw_piston(double theta, double sign);
@@ -267,7 +268,7 @@ class Picture {
   const Geometry& g_;
   analytic::DerivedQuantities derived_;
   PumpOutline o_;
-  double size_, block_from_, block_to_, block_radius_, bottom_ = 0;
+  double bottom_ = 0;
   View side_, joints_, block_;
   std::string rule_;
 };
@@ -275,37 +276,36 @@ class Picture {
 // In section: z1 to the right, y1 upwards.
 void Picture::draw_side() {
   View& v = side_;
-  const double shaft = o_.shaft_radius;
-  const double shaft_end = o_.shaft_end;
-  const double flange = o_.flange;
-  v.path("pale", {{0, flange_radius()},
-                  {0, -flange_radius()},
-                  {-flange, -flange_radius()},
-                  {-flange - 0.1 * size_, -shaft},
+  const double shaft = o_.shaft_radius, shaft_end = o_.shaft_end, flange = o_.flange;
+  v.path("pale", {{0, o_.flange_radius},
+                  {0, -o_.flange_radius},
+                  {-flange, -o_.flange_radius},
+                  {-flange - 0.1 * o_.size, -shaft},
                   {shaft_end, -shaft},
                   {shaft_end, shaft},
-                  {-flange - 0.1 * size_, shaft},
-                  {-flange, flange_radius()}});
-  v.path("pale", {from_block(block_from_, -block_radius_), from_block(block_to_, -block_radius_),
-                  from_block(block_to_, block_radius_), from_block(block_from_, block_radius_)});
+                  {-flange - 0.1 * o_.size, shaft},
+                  {-flange, o_.flange_radius}});
+  v.path("pale",
+         {from_block(o_.block_from, -o_.block_radius), from_block(o_.block_to, -o_.block_radius),
+          from_block(o_.block_to, o_.block_radius), from_block(o_.block_from, o_.block_radius)});
   draw_gear_cones();
   draw_joint_at_centre();
   // Axes, crossing at O2.
-  v.line("axis", {shaft_end - 0.08 * size_, 0}, {0.35 * size_, 0});
-  v.line("axis", from_block(-0.2 * size_, 0), from_block(block_to_ + 0.32 * bore(), 0));
+  v.line("axis", {shaft_end - 0.08 * o_.size, 0}, {0.35 * o_.size, 0});
+  v.line("axis", from_block(-0.2 * o_.size, 0), from_block(o_.block_to + 0.32 * o_.bore, 0));
   v.line("edge", {0, -g_.joint_circle_radius}, {0, g_.joint_circle_radius});
   draw_piston(0, 1);
   draw_piston(kPi, -1);
   draw_wall_contact(0, 1);
   draw_wall_contact(kPi, -1);
   // Lands and groove of the plate, in section.
-  if (p_.port_plate && p_.port_plate->r4 < kFar * size_) {
+  if (p_.port_plate && p_.port_plate->r4 < kFar * o_.size) {
     const PortPlate& plate = *p_.port_plate;
     for (const double sign : {-1.0, 1.0}) {
       const auto stripe = [&](double inner, double outer, const char* style, double depth) {
-        v.path(style, {from_block(block_to_, sign * inner), from_block(block_to_, sign * outer),
-                       from_block(block_to_ + depth, sign * outer),
-                       from_block(block_to_ + depth, sign * inner)});
+        v.path(style, {from_block(o_.block_to, sign * inner), from_block(o_.block_to, sign * outer),
+                       from_block(o_.block_to + depth, sign * outer),
+                       from_block(o_.block_to + depth, sign * inner)});
       };
       stripe(plate.r1, plate.r4, "pale", o_.plate);
       stripe(plate.r2, plate.r3, "thin", o_.plate);
@@ -313,21 +313,21 @@ void Picture::draw_side() {
   }
   draw_bearing(p_.bearings.tapered_z, true);
   draw_bearing(p_.bearings.cylindrical_z, false);
-  if (is_far(p_.block.pin_z)) {
+  if (o_.is_far(p_.block.pin_z)) {
     v.words(fmt::format("pin at {} mm", mm_text(p_.block.pin_z)),
-            from_block(std::copysign(0.6 * size_, p_.block.pin_z), 0), 0, -8, "middle");
+            from_block(std::copysign(0.6 * o_.size, p_.block.pin_z), 0), 0, -8, "middle");
   } else {
     v.line("pin", from_block(0, 0), from_block(p_.block.pin_z, 0));
     v.dot("pin-point", from_block(p_.block.pin_z, 0), 5);
     v.words("pin", from_block(p_.block.pin_z, 0), 8, 14);
   }
-  if (!is_far(p_.shaft.centre_of_mass_z)) v.dot("mass", {p_.shaft.centre_of_mass_z, 0}, 3.5);
-  if (!is_far(p_.block.centre_of_mass_z))
+  if (!o_.is_far(p_.shaft.centre_of_mass_z)) v.dot("mass", {p_.shaft.centre_of_mass_z, 0}, 3.5);
+  if (!o_.is_far(p_.block.centre_of_mass_z))
     v.dot("mass", from_block(p_.block.centre_of_mass_z, 0), 3.5);
   // Dimensions.
   v.dimension({0, 0}, {0, -g_.joint_circle_radius}, -14, "", "", 0, 0);
-  v.words("Ra " + mm_text(g_.joint_circle_radius), {0, -flange_radius()}, -16, 16);
-  const double behind = block_to_ + 0.42 * bore();
+  v.words("Ra " + mm_text(g_.joint_circle_radius), {0, -o_.flange_radius}, -16, 16);
+  const double behind = o_.block_to + 0.42 * o_.bore;
   v.dimension(from_block(behind, 0), from_block(behind, -g_.bore_circle_radius), 0,
               "Rd " + mm_text(g_.bore_circle_radius), "", 8, 6);
   const Point a{0, g_.joint_circle_radius};
@@ -335,7 +335,7 @@ void Picture::draw_side() {
   v.dimension(a, b, 24, "b1 " + mm_text(g_.piston_length), "end", -8, -8);
   // Tilt, as an arc about O2.
   if (g_.tilt > 0.02) {
-    const double r = 0.62 * size_;
+    const double r = 0.62 * o_.size;
     const double o = g_.axis_offset * 1e3;
     v.raw(fmt::format("<path class=\"dimension\" d=\"M{} 0A{} {} 0 0 1 {} {}\"/>\n",
                       at(o + r * 1e3), at(r * 1e3), at(r * 1e3), at(o + r * o_.cosine * 1e3),
@@ -346,15 +346,12 @@ void Picture::draw_side() {
   } else {
     v.words(fmt::format("tilt {:.6g}\u00b0", g_.tilt / kRadPerDegree), {g_.axis_offset, 0}, 10, 16);
   }
-  const double left = v.column();
-  v.paper("Plane of the tilt", {left, 20}, "title");
-  v.paper("z1 to the right, y1 up; pistons at 0\u00b0 and 180\u00b0", {left, 36}, "small");
-  v.paper(
-      fmt::format("stroke {:.4g} mm, {:.4g} cm3/rev; pistons tilt {:.2g}..{:.2g}\u00b0 in "
-                  "their bores",
-                  derived_.stroke * 1e3, derived_.displacement * 1e6,
-                  derived_.smallest_tilt / kRadPerDegree, derived_.largest_tilt / kRadPerDegree),
-      {left, bottom_ + 24});
+  describe(
+      v, "Plane of the tilt", "z1 to the right, y1 up; pistons at 0\u00b0 and 180\u00b0",
+      {fmt::format("stroke {:.4g} mm, {:.4g} cm3/rev; pistons tilt {:.2g}..{:.2g}\u00b0 in "
+                   "their bores",
+                   derived_.stroke * 1e3, derived_.displacement * 1e6,
+                   derived_.smallest_tilt / kRadPerDegree, derived_.largest_tilt / kRadPerDegree)});
 }
 
 void Picture::draw_piston(double theta, double sign) {
@@ -365,17 +362,17 @@ void Picture::draw_piston(double theta, double sign) {
   // Bore: from the block's face to behind the deepest piston.
   const double bottom = o_.bore_bottom;
   v.path("bore",
-         {from_block(block_from_, rd + half), from_block(bottom, rd + half),
-          from_block(bottom, rd - half), from_block(block_from_, rd - half)},
+         {from_block(o_.block_from, rd + half), from_block(bottom, rd + half),
+          from_block(bottom, rd - half), from_block(o_.block_from, rd - half)},
          false);
   // A cone from the ball to a head behind the ring at B.
   const Point along = unit(b - a);
   const Point across{-along.y, along.x};
-  const double ring = 0.97 * half, neck = 0.62 * ball();
-  const Point head = b + 0.1 * bore() * along;
+  const double ring = 0.97 * half, neck = 0.62 * o_.ball;
+  const Point head = b + 0.1 * o_.bore * along;
   v.path("piston", {a + neck * across, b + ring * across, head + 0.8 * ring * across,
                     head - 0.8 * ring * across, b - ring * across, a - neck * across});
-  v.circle("piston", a, ball());
+  v.circle("piston", a, o_.ball);
   v.line("thin", a, b);
   v.dot("mass", a, 2.2);
   v.dot("mass", b, 2.2);
@@ -387,8 +384,8 @@ void Picture::draw_bearing(double z, bool tapered) {
   View& v = side_;
   const std::string name = tapered ? "C1 tapered" : "C2 cylindrical";
   const double shaft = o_.shaft_radius, height = o_.bearing_height;
-  if (is_far(z)) {
-    const Point edge{std::copysign(kFar * size_, z), 0};
+  if (o_.is_far(z)) {
+    const Point edge{std::copysign(kFar * o_.size, z), 0};
     v.words(fmt::format("{} at {} mm {}", name, mm_text(z), z < 0 ? "\u2190" : "\u2192"), edge, 0,
             tapered ? -34 : 44, z < 0 ? "" : "end");
     return;
@@ -410,15 +407,15 @@ void Picture::draw_bearing(double z, bool tapered) {
 void Picture::draw_gear_cones() {
   View& v = side_;
   if (!gear_is_drawn()) return;
-  const double r = gear_radius(), behind = r * std::tan(g_.tilt / 2);
+  const double r = o_.gear_radius, behind = r * std::tan(g_.tilt / 2);
   const Point apex = from_block(0, 0);
   const double back = PumpOutline::kGearFace;  // the teeth are at the outer end of the cone
   for (const double sign : {-1.0, 1.0}) {
-    const Point of_shaft{gear_z(), sign * r}, of_block = from_block(behind, sign * r);
+    const Point of_shaft{o_.gear_z, sign * r}, of_block = from_block(behind, sign * r);
     v.line("gear", apex + back * (of_shaft - apex), of_shaft);
     v.line("gear", apex + back * (of_block - apex), of_block);
   }
-  const Point contact{gear_z(), r};
+  const Point contact{o_.gear_z, r};
   v.dot("gear", contact, 4);
   v.words("O4", contact, -8, -8, "end");
 }
@@ -501,30 +498,25 @@ std::string Picture::transfer_words() const {
 // S1 against z1: x1 to the right, y1 upwards, positive angles to the left.
 void Picture::draw_joints() {
   View& v = joints_;
-  v.circle("pale", {0, 0}, flange_radius());
+  v.circle("pale", {0, 0}, o_.flange_radius);
   v.circle("joints", {0, 0}, g_.joint_circle_radius);
-  if (gear_is_drawn()) v.circle("gear", {0, 0}, gear_radius());
+  if (gear_is_drawn()) v.circle("gear", {0, 0}, o_.gear_radius);
   if (p_.transfer.has_crosses()) {
     const double phase = p_.transfer.phase();
     const Point arm = o_.transfer_radius() * Point{std::cos(phase), -std::sin(phase)};
     v.line("gear", -1 * arm, arm);
     for (const double sign : {-1.0, 1.0}) v.dot("gear-point", sign * arm, 4);
   }
-  const double arm = v.high().y;
-  v.line("axis", {-arm, 0}, {arm, 0});
-  v.line("axis", {0, -arm}, {0, arm});
+  v.axes();
   for (int k = 0; k < g_.pistons; ++k) {
     const double theta = -2 * kPi * k / g_.pistons;
     const Point a{-g_.joint_circle_radius * std::sin(theta),
                   g_.joint_circle_radius * std::cos(theta)};
-    v.circle("piston", a, ball());
+    v.circle("piston", a, o_.ball);
     if (g_.pistons <= 12) v.words(std::to_string(k + 1), a, 0, 4, "middle");
   }
-  const double left = v.column();
-  v.paper(o_.has_gear ? "Joints and gear" : "Joints", {left, 20}, "title");
-  v.paper("against the shaft axis: x1 right, y1 up", {left, 36}, "small");
-  v.paper("joint circle Ra " + mm_text(g_.joint_circle_radius) + " mm", {left, bottom_ + 24});
-  v.paper(transfer_words(), {left, bottom_ + 42});
+  describe(v, o_.has_gear ? "Joints and gear" : "Joints", "against the shaft axis: x1 right, y1 up",
+           {"joint circle Ra " + mm_text(g_.joint_circle_radius) + " mm", transfer_words()});
 }
 
 void Picture::draw_port(const PortArc& arc, const char* style) {
@@ -549,15 +541,13 @@ void Picture::draw_port(const PortArc& arc, const char* style) {
 void Picture::draw_block() {
   View& v = block_;
   const PortPlate* plate = p_.port_plate ? &*p_.port_plate : nullptr;
-  const bool plate_fits = plate != nullptr && plate->r4 < kFar * size_;
-  v.circle("pale", {0, 0}, block_radius_);
+  const bool plate_fits = plate != nullptr && plate->r4 < kFar * o_.size;
+  v.circle("pale", {0, 0}, o_.block_radius);
   if (plate_fits) {
     draw_port(plate->delivery, "delivery");
     draw_port(plate->suction, "suction");
   }
-  const double arm = v.high().y;
-  v.line("axis", {-arm, 0}, {arm, 0});
-  v.line("axis", {0, -arm}, {0, arm});
+  v.axes();
   v.circle("thin", {0, 0}, g_.bore_circle_radius);
   v.raw(fmt::format("<ellipse class=\"joints\" cx=\"0\" cy=\"{}\" rx=\"{}\" ry=\"{}\"/>\n",
                     at(g_.axis_offset * o_.sine * 1e3), mm_text(g_.joint_circle_radius),
@@ -571,17 +561,14 @@ void Picture::draw_block() {
     v.dot("joint", joint(theta), 2.6);
     if (g_.pistons <= 12) v.words(std::to_string(k + 1), c, 0, 16, "middle small");
   }
-  const double left = v.column();
-  v.paper("Bores and port plate", {left, 20}, "title");
-  v.paper("against the block axis: x2 right, y2 up", {left, 36}, "small");
-  v.paper(fmt::format("bores Dpi {} mm on Rd {} mm", mm_text(g_.bore_diameter),
-                      mm_text(g_.bore_circle_radius)),
-          {left, bottom_ + 24});
-  v.paper(plate == nullptr ? std::string("no port plate")
-                           : fmt::format("lands {}..{} and {}..{} mm{}", mm_text(plate->r1),
-                                         mm_text(plate->r2), mm_text(plate->r3), mm_text(plate->r4),
-                                         plate_fits ? "" : " (not drawn: too large)"),
-          {left, bottom_ + 42});
+  describe(
+      v, "Bores and port plate", "against the block axis: x2 right, y2 up",
+      {fmt::format("bores Dpi {} mm on Rd {} mm", mm_text(g_.bore_diameter),
+                   mm_text(g_.bore_circle_radius)),
+       plate == nullptr ? std::string("no port plate")
+                        : fmt::format("lands {}..{} and {}..{} mm{}", mm_text(plate->r1),
+                                      mm_text(plate->r2), mm_text(plate->r3), mm_text(plate->r4),
+                                      plate_fits ? "" : " (not drawn: too large)")});
 }
 
 // A rule, and what the colours are.

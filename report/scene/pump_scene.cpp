@@ -42,10 +42,10 @@ int number_of(const std::string& text) {
   return digits < text.size() ? std::stoi(text.substr(digits)) : 0;
 }
 
-bool starts(const std::string& text, const char* with) { return text.rfind(with, 0) == 0; }
-
 // Of a load that is said of both bodies, the one that its name is about.
-int rank(const std::string& body) { return starts(body, "piston") ? 0 : body == "block" ? 1 : 2; }
+int rank(const std::string& body) {
+  return body.starts_with("piston") ? 0 : body == "block" ? 1 : 2;
+}
 
 class SceneMaker {
  public:
@@ -124,6 +124,27 @@ class SceneMaker {
   std::optional<Terms> by_one_channel(std::size_t column, const report::Values* parts,
                                       const SceneRun& run) const;
   Terms by_series(const std::array<report::Values, 3>& parts);
+  Terms along_axes(const std::array<report::Values, 3>& parts) {
+    Terms terms;
+    for (int i = 0; i < 3; ++i) {
+      report::Point axis = {};
+      axis[i] = 1;
+      terms.terms.push_back({axis, add_series(parts[i])});
+    }
+    return terms;
+  }
+  // Components of a load over the rows.
+  std::array<report::Values, 3> parts_of(const SceneRun& run, std::size_t index,
+                                         report::Point BodyLoadTable::Row::*of) const {
+    std::array<report::Values, 3> parts;
+    for (std::size_t row = 0; row < scene_.rows; ++row)
+      for (int i = 0; i < 3; ++i) parts[i].push_back((run.loads.at(row, index).*of)[i]);
+    return parts;
+  }
+  Place film_point() const {
+    return {"plate",
+            {{{{1, 0, 0}, channel(layout_.xh(), 1e-3)}, {{0, 1, 0}, channel(layout_.yh(), 1e-3)}}}};
+  }
   bool film_point_is_near() const;
 
   const PumpParameters& p_;
@@ -214,7 +235,7 @@ bool SceneMaker::film_point_is_near() const {
 
 Place SceneMaker::place_of(const BodyLoad& load, const SceneRun& run, std::size_t index) {
   const int number = number_of(load.point);
-  if (number > 0 && number <= g_.pistons && !starts(load.symbol, "Rcs")) {
+  if (number > 0 && number <= g_.pistons && !load.symbol.starts_with("Rcs")) {
     const std::string piston = "piston " + std::to_string(number);
     const auto found =
         std::find_if(scene_.bodies.begin(), scene_.bodies.end(),
@@ -224,26 +245,17 @@ Place SceneMaker::place_of(const BodyLoad& load, const SceneRun& run, std::size_
     if (load.point == "B" + std::to_string(number)) return between.to;
     if (load.point == "D" + std::to_string(number))
       return {piston, constant({0, 0, p_.transfer.wall->from_joint})};
-    if (starts(load.point, "contact point"))
+    if (load.point.starts_with("contact point"))
       return {piston, constant({0, 0, p_.piston.contact.value_or(g_.piston_length)})};
   }
-  if (starts(load.on, "piston") && load.point == "centre of mass")
+  if (load.on.starts_with("piston") && load.point == "centre of mass")
     for (const BodyLoad& joint : run.loads.row(0))
       if (joint.on == load.on && joint.symbol == "Rs")
         return {load.on,
                 constant({0, 0, (vector(run.loads.at(0, index).at) - vector(joint.at)).norm()})};
-  if (load.symbol == "Fh" && at_film_point_)
-    return {"plate",
-            {{{{1, 0, 0}, channel(layout_.xh(), 1e-3)}, {{0, 1, 0}, channel(layout_.yh(), 1e-3)}}}};
-  std::array<report::Values, 3> at;
-  for (std::size_t row = 0; row < scene_.rows; ++row)
-    for (int i = 0; i < 3; ++i) at[i].push_back(run.loads.at(row, index).at[i]);
+  if (load.symbol == "Fh" && at_film_point_) return film_point();
   Place place;
-  for (int i = 0; i < 3; ++i) {
-    report::Point axis = {};
-    axis[i] = 1;
-    place.at.terms.push_back({axis, add_series(std::move(at[i]))});
-  }
+  place.at = along_axes(parts_of(run, index, &BodyLoadTable::Row::at));
   return place;
 }
 
@@ -299,22 +311,14 @@ Terms SceneMaker::by_series(const std::array<report::Values, 3>& parts) {
     straight = straight && (at(row) - along.back() * axis).norm() <= kSame * most;
   }
   if (straight) return {{{point(axis), add_series(std::move(along))}}};
-  Terms terms;
-  for (int i = 0; i < 3; ++i) {
-    report::Point unit = {};
-    unit[i] = 1;
-    terms.terms.push_back({unit, add_series(parts[i])});
-  }
-  return terms;
+  return along_axes(parts);
 }
 
 Terms SceneMaker::force_of(const BodyLoad& load, const SceneRun& run, std::size_t index,
                            double sign) {
-  std::array<report::Values, 3> parts;
-  for (std::size_t row = 0; row < scene_.rows; ++row)
-    for (int i = 0; i < 3; ++i) parts[i].push_back(run.loads.at(row, index).force[i]);
-  const int piston = std::max(starts(load.on, "piston") ? number_of(load.on) : 0,
-                              starts(load.by, "piston") ? number_of(load.by) : 0);
+  const auto parts = parts_of(run, index, &BodyLoadTable::Row::force);
+  const int piston = std::max(load.on.starts_with("piston") ? number_of(load.on) : 0,
+                              load.by.starts_with("piston") ? number_of(load.by) : 0);
   if (load.kind == ForceKind::reaction)
     if (auto terms = by_channels(load.symbol, piston, sign)) return *terms;
   std::optional<std::size_t> column;
@@ -330,10 +334,7 @@ Terms SceneMaker::moment_of(const BodyLoad& load, const SceneRun& run, std::size
                             double sign) {
   if (load.kind == ForceKind::reaction)
     if (auto terms = by_channels(load.symbol, 0, sign)) return *terms;
-  std::array<report::Values, 3> parts;
-  for (std::size_t row = 0; row < scene_.rows; ++row)
-    for (int i = 0; i < 3; ++i) parts[i].push_back(run.loads.at(row, index).moment[i]);
-  return by_series(parts);
+  return by_series(parts_of(run, index, &BodyLoadTable::Row::moment));
 }
 
 std::string group_of(const BodyLoad& load) {
@@ -346,9 +347,9 @@ std::string group_of(const BodyLoad& load) {
 
 report::SceneLoad SceneMaker::described(const BodyLoad& load) {
   report::SceneLoad shown;
-  const std::string piston = starts(load.on, "piston")   ? load.on
-                             : starts(load.by, "piston") ? load.by
-                                                         : std::string();
+  const std::string piston = load.on.starts_with("piston")   ? load.on
+                             : load.by.starts_with("piston") ? load.by
+                                                             : std::string();
   shown.counterpart = rank(load.by) < rank(load.on) && (!piston.empty() || load.by == "block");
   shown.id = load.symbol;
   const int number = !piston.empty() ? number_of(piston) : 0;
@@ -359,10 +360,10 @@ report::SceneLoad SceneMaker::described(const BodyLoad& load) {
                                                  : load.point.substr(0, load.point.find(' ')));
   else if (load.kind == ForceKind::inertia)
     shown.id += "_" + load.on;
-  else if (starts(load.point, "flank"))
+  else if (load.point.starts_with("flank"))
     shown.id += "_" + load.point;
   if (shown.counterpart) shown.id += "." + load.on;
-  shown.label = load.symbol + " on " + (starts(load.on, "piston") ? "" : "the ") + load.on;
+  shown.label = load.symbol + " on " + (load.on.starts_with("piston") ? "" : "the ") + load.on;
   shown.group = group_of(load);
   shown.kind = load.kind;
   shown.on = load.on;
@@ -379,9 +380,7 @@ report::SceneLoad SceneMaker::described(const BodyLoad& load) {
 
 void SceneMaker::add_loads() {
   at_film_point_ = film_point_is_near();
-  scene_.film_point =
-      Place{"plate",
-            {{{{1, 0, 0}, channel(layout_.xh(), 1e-3)}, {{0, 1, 0}, channel(layout_.yh(), 1e-3)}}}};
+  scene_.film_point = film_point();
   // Loads of all models, each behind those before it where a model first has it.
   std::vector<BodyLoad> loads;
   for (const SceneRun& run : runs_) {

@@ -29,14 +29,18 @@ Line circle(double radius, int points, Corner centre = {0, 0}) {
   return line;
 }
 
+// Where psi of a chamber is.
+Corner on_circle(double radius, double psi) {
+  return {-radius * std::sin(psi), radius * std::cos(psi)};
+}
+
 // Between two radii from one angle to another, as those of a port.
 Line sector(double inner, double outer, double from_deg, double to_deg) {
   const int pieces =
       std::max(2, static_cast<int>(std::ceil((to_deg - from_deg) / kDegreesPerPoint)));
   Line line;
   const auto add = [&](double radius, int i) {
-    const double psi = radians(from_deg + (to_deg - from_deg) * i / pieces);
-    line.push_back({-radius * std::sin(psi), radius * std::cos(psi)});
+    line.push_back(on_circle(radius, radians(from_deg + (to_deg - from_deg) * i / pieces)));
   };
   for (int i = 0; i <= pieces; ++i) add(outer, i);
   for (int i = pieces; i >= 0; --i) add(inner, i);
@@ -110,9 +114,7 @@ void Shapes::shaft() {
                            Look::shaft});
   // Seats: rings about the balls.
   for (int k = 0; k < g_.pistons; ++k) {
-    const double phi = -2 * kPi * k / g_.pistons;
-    const Corner centre = {-g_.joint_circle_radius * std::sin(phi),
-                           g_.joint_circle_radius * std::cos(phi)};
+    const Corner centre = on_circle(g_.joint_circle_radius, -2 * kPi * k / g_.pistons);
     const bool apart =
         g_.pistons == 1 || 2 * g_.joint_circle_radius * std::sin(kPi / g_.pistons) > 2.5 * o_.ball;
     if (apart)
@@ -142,12 +144,9 @@ void Shapes::piston() {
 void Shapes::block() {
   const Line outline = circle(o_.block_radius, kCirclePoints);
   std::vector<Line> bores;
-  for (int k = 0; k < g_.pistons; ++k) {
-    const double phi = -2 * kPi * k / g_.pistons;
-    bores.push_back(
-        circle(o_.bore / 2, kBorePoints,
-               {-g_.bore_circle_radius * std::sin(phi), g_.bore_circle_radius * std::cos(phi)}));
-  }
+  for (int k = 0; k < g_.pistons; ++k)
+    bores.push_back(circle(o_.bore / 2, kBorePoints,
+                           on_circle(g_.bore_circle_radius, -2 * kPi * k / g_.pistons)));
   // Bores that cut each other leave no block to draw.
   const bool apart =
       g_.pistons == 1 || 2 * g_.bore_circle_radius * std::sin(kPi / g_.pistons) > 1.02 * o_.bore;
@@ -202,14 +201,12 @@ void Shapes::notches(const PlatePort& port, Look look) {
               0),
          look});
   for (const PlateHole& hole : port.holes)
-    if (hole.diameter > 0) {
-      const double psi = radians(hole.angle_deg);
-      shapes_.plate.push_back({wire(circle(hole.diameter / 2, kBorePoints,
-                                           {-g_.bore_circle_radius * std::sin(psi),
-                                            g_.bore_circle_radius * std::cos(psi)}),
-                                    0),
-                               look});
-    }
+    if (hole.diameter > 0)
+      shapes_.plate.push_back(
+          {wire(circle(hole.diameter / 2, kBorePoints,
+                       on_circle(g_.bore_circle_radius, radians(hole.angle_deg))),
+                0),
+           look});
 }
 
 void Shapes::plate() {
@@ -303,6 +300,12 @@ report::Mesh teeth(const BevelTooth& tooth, double apex_z, double up, double ahe
 // What turns the block: a gear, a joint at O2, or pistons that touch their bores at D.
 void Shapes::transfer() {
   const double r = o_.transfer_radius(), thick = 0.06 * o_.size;
+  // In a body's own axes, which turn with it.
+  const auto arm = [&](std::vector<Shape>& shapes, double x, double y, double z) {
+    shapes.push_back({report::Wire{{{-r * x, -r * y, z}, {r * x, r * y, z}}, false}, Look::gear});
+    for (const double sign : {-1.0, 1.0})
+      shapes.push_back({report::Ball{{sign * r * x, sign * r * y, z}, thick}, Look::gear});
+  };
   switch (p_.transfer.kind) {
     case TransferKind::gear:
       return gear();
@@ -326,32 +329,16 @@ void Shapes::transfer() {
       // The arms that the forks of shaft and block hold, at the centres of their crosses.
       const double phase = p_.transfer.phase(), c = std::cos(phase), s = std::sin(phase);
       const double distance = p_.transfer.double_cardan->cross_distance;
-      const auto put = [&](auto& shapes, double z) {
-        shapes.push_back(
-            {report::Wire{{{-r * c, r * s, z}, {r * c, -r * s, z}}, false}, Look::gear});
-        for (const double sign : {-1.0, 1.0})
-          shapes.push_back({report::Ball{{sign * r * c, -sign * r * s, z}, thick}, Look::gear});
-      };
-      put(shapes_.shaft, g_.axis_offset - distance);
-      put(shapes_.block, distance);
+      arm(shapes_.shaft, c, -s, g_.axis_offset - distance);
+      arm(shapes_.block, c, -s, distance);
       shapes_.note +=
           "; of the double universal joint the arms in the forks of shaft and block are drawn";
       return;
     }
     case TransferKind::cardan: {
-      const double phase = p_.transfer.phase();
-      const auto arm = [&](double x, double y, double z) {
-        return report::Wire{{{-r * x, -r * y, z}, {r * x, r * y, z}}, false};
-      };
-      // In each body's own axes, which turn with it.
-      const double c = std::cos(phase), s = std::sin(phase);
-      shapes_.shaft.push_back({arm(c, -s, g_.axis_offset), Look::gear});
-      shapes_.block.push_back({arm(s, c, 0), Look::gear});
-      for (const double sign : {-1.0, 1.0}) {
-        shapes_.shaft.push_back(
-            {report::Ball{{sign * r * c, -sign * r * s, g_.axis_offset}, thick}, Look::gear});
-        shapes_.block.push_back({report::Ball{{sign * r * s, sign * r * c, 0}, thick}, Look::gear});
-      }
+      const double phase = p_.transfer.phase(), c = std::cos(phase), s = std::sin(phase);
+      arm(shapes_.shaft, c, -s, g_.axis_offset);
+      arm(shapes_.block, s, c, 0);
       shapes_.note += "; of the universal joint the arms of both forks are drawn";
       return;
     }

@@ -86,4 +86,7 @@ class OutputFolder {
   std::vector<std::unique_ptr<Stream>> streams_;
 };
 
+/// A single file in a folder that may be missing. @throws InputError
+void write_file(const std::filesystem::path& file, const std::string& content);
+
 }  // namespace bentaxis
