@@ -3,13 +3,10 @@
 #include "bentaxis/files/csv_rows.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/report/picture.h"
+#include "picture/axes.h"
 
 namespace bentaxis::report {
 namespace {
-
-std::string heading_of(const Axis& axis) {
-  return axis.unit.empty() ? axis.label : fmt::format("{} ({})", axis.label, axis.unit);
-}
 
 // Columns of equal length beside each other.
 std::string beside(const std::vector<std::pair<std::string, const Values*>>& columns) {
@@ -64,13 +61,13 @@ std::string numbers(const OwnFigure& figure, const Curves&) {
     for (const Series& series : *list) columns.emplace_back(series.label, &series.values);
   if (figure.right)
     for (const Series& series : figure.right->series)
-      columns.emplace_back(heading_of({series.label, figure.right->unit}), &series.values);
+      columns.emplace_back(picture::name_of({series.label, figure.right->unit}), &series.values);
   return beside(columns);
 }
 
 std::string numbers(const XyFigure& figure, const Curves&) {
   CsvRows csv;
-  csv.row("series", heading_of(figure.x), heading_of(figure.y));
+  csv.row("series", picture::name_of(figure.x), picture::name_of(figure.y));
   for (const XySeries& series : figure.series)
     for (std::size_t i = 0; i < series.x.size(); ++i)
       csv.row(series.label, series.x[i], series.y[i]);
@@ -79,7 +76,7 @@ std::string numbers(const XyFigure& figure, const Curves&) {
 
 std::string numbers(const MapFigure& figure, const Curves&) {
   CsvRows csv;
-  csv.row(heading_of(figure.x), heading_of(figure.y), heading_of(figure.z));
+  csv.row(picture::name_of(figure.x), picture::name_of(figure.y), picture::name_of(figure.z));
   for (std::size_t i = 0; i < figure.values.size(); ++i)
     for (std::size_t j = 0; j < figure.values[i].size(); ++j) {
       const double value = figure.values[i][j];
@@ -94,7 +91,7 @@ std::string numbers(const MapFigure& figure, const Curves&) {
 
 std::string numbers(const ScatterFigure& figure, const Curves&) {
   CsvRows csv;
-  csv.row("series", heading_of(figure.x), heading_of(figure.y), "note");
+  csv.row("series", picture::name_of(figure.x), picture::name_of(figure.y), "note");
   for (const ScatterSeries& series : figure.series)
     for (const ScatterPoint& point : series.points)
       csv.row(series.name, point.x, point.y, point.note);
@@ -129,7 +126,7 @@ std::string numbers(const DrawingFigure& figure, const Curves&) {
 
 std::string numbers(const BarsFigure& figure, const Curves&) {
   CsvRows csv;
-  csv.row(heading_of(figure.x), "low", "high", "from", "to", "note");
+  csv.row(picture::name_of(figure.x), "low", "high", "from", "to", "note");
   for (const BarsFigure::Bar& bar : figure.bars) {
     const auto [from, to] = bar.interval.value_or(std::pair{not_computed(), not_computed()});
     csv.row(bar.label, bar.low, bar.high, from, to, bar.note);
@@ -139,7 +136,7 @@ std::string numbers(const BarsFigure& figure, const Curves&) {
 
 std::string numbers(const BandFigure& figure, const Curves&) {
   CsvRows csv;
-  csv.row("series", heading_of(figure.x), heading_of(figure.y), "low", "high");
+  csv.row("series", picture::name_of(figure.x), picture::name_of(figure.y), "low", "high");
   for (const BandFigure::Band& band : figure.bands)
     for (std::size_t i = 0; i < figure.x_values.size(); ++i)
       csv.row(band.label, figure.x_values[i], band.middle[i], band.low[i], band.high[i]);
@@ -153,7 +150,7 @@ std::string numbers(const ParallelFigure& figure, const Curves&) {
   CsvRows csv;
   std::vector<std::string> names;
   for (const auto& column : figure.columns)
-    names.push_back(heading_of({column.label, column.unit}));
+    names.push_back(picture::name_of({column.label, column.unit}));
   csv.row(names, "marked");
   if (figure.columns.empty()) return std::move(csv).text();
   Values marked(figure.columns.front().values.size(), 0.0);

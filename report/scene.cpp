@@ -72,16 +72,10 @@ Json per_model(const std::vector<Item>& items) {
 
 // Shapes are drawn in floats.
 Json drawn(double x) { return rounded(x, 7); }
-template <std::size_t size>
-Json drawn(const std::array<double, size>& numbers) {
+template <class List>
+Json drawn(const List& items) {
   Json list = Json::array();
-  for (const double x : numbers) list.push_back(drawn(x));
-  return list;
-}
-template <class Item>
-Json drawn(const std::vector<Item>& items) {
-  Json list = Json::array();
-  for (const Item& item : items) list.push_back(drawn(item));
+  for (const auto& item : items) list.push_back(drawn(item));
   return list;
 }
 Json flat(const std::vector<report::Point>& points) {

@@ -97,7 +97,7 @@ std::string words_for(const CLI::App& program, const CLI::ParseError& error) {
   if (missing || is(CLI::ExtrasError({}))) {
     std::vector<std::string> arguments = program.remaining(true);
     std::stable_partition(arguments.begin(), arguments.end(),
-                          [](const std::string& argument) { return argument.rfind("--", 0) == 0; });
+                          [](const std::string& argument) { return argument.starts_with("--"); });
     if (!arguments.empty() && !arguments.front().empty())
       return unexpected(*command, arguments.front());
     if (const auto commands = commands_of(*command); !commands.empty())
@@ -107,7 +107,7 @@ std::string words_for(const CLI::App& program, const CLI::ParseError& error) {
     const std::string name = option->get_name();
     if (missing && option->get_positional() && what == name + " is required")
       return command->get_name() + ": " + option->get_option_text() + " is missing";
-    if (is(CLI::ArgumentMismatch("")) && what.rfind(name + ": ", 0) == 0)
+    if (is(CLI::ArgumentMismatch("")) && what.starts_with(name + ": "))
       return option->count() > 1 ? name + " is given more than once"
                                  : name + " needs a value: " + option->get_option_text();
   }

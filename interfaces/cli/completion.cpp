@@ -7,8 +7,6 @@ namespace {
 
 using Kind = Completion::Kind;
 
-bool begins(const std::string& text, const std::string& with) { return text.rfind(with, 0) == 0; }
-
 // Values as the help text has them tell files from folders and from what has to be typed.
 Kind kind_of(const std::string& values) {
   const auto has = [&](const char* word) { return values.find(word) != std::string::npos; };
@@ -25,7 +23,7 @@ Completion values_of(const OptionInfo& option, const std::string& before,
   const std::size_t comma = option.takes_several ? begun.rfind(',') : std::string::npos;
   const std::string list = comma == std::string::npos ? "" : begun.substr(0, comma + 1);
   for (const std::string& word : option.words)
-    if (begins(list + word, begun)) result.words.emplace_back(before + list + word, "");
+    if ((list + word).starts_with(begun)) result.words.emplace_back(before + list + word, "");
   return result;
 }
 
@@ -44,7 +42,7 @@ const OptionInfo* argument_of(const CommandInfo& command, std::size_t index) {
 Completion options_of(const CommandInfo& command, const std::string& begun) {
   Completion result{Kind::words, {}};
   for (const OptionInfo& option : command.options)
-    if (!option.is_argument && begins(option.names.back(), begun))
+    if (!option.is_argument && option.names.back().starts_with(begun))
       result.words.emplace_back(option.names.back(), option.what);
   return result;
 }
@@ -52,7 +50,7 @@ Completion options_of(const CommandInfo& command, const std::string& begun) {
 Completion commands_of(const CommandInfo& command, const std::string& begun) {
   Completion result{Kind::words, {}};
   for (const CommandInfo& one : command.commands)
-    if (begins(one.name, begun)) result.words.emplace_back(one.name, one.what);
+    if (one.name.starts_with(begun)) result.words.emplace_back(one.name, one.what);
   return result;
 }
 
@@ -66,7 +64,7 @@ Completion complete(const CommandInfo& program, const std::vector<std::string>& 
     const std::string& word = typed[i];
     if (waiting != nullptr) {
       waiting = nullptr;
-    } else if (begins(word, "-")) {
+    } else if (word.starts_with("-")) {
       const OptionInfo* option = option_called(*command, word);
       if (option != nullptr && option->takes_value) waiting = option;
     } else {
@@ -80,12 +78,12 @@ Completion complete(const CommandInfo& program, const std::vector<std::string>& 
   }
   const std::string last = typed.empty() ? "" : typed.back();
   if (waiting != nullptr) return values_of(*waiting, "", last);
-  if (const auto equals = last.find('='); begins(last, "--") && equals != std::string::npos) {
+  if (const auto equals = last.find('='); last.starts_with("--") && equals != std::string::npos) {
     const OptionInfo* option = option_called(*command, last.substr(0, equals));
     if (option == nullptr) return {};
     return values_of(*option, last.substr(0, equals + 1), last.substr(equals + 1));
   }
-  if (begins(last, "-")) return options_of(*command, last);
+  if (last.starts_with("-")) return options_of(*command, last);
   if (!command->commands.empty()) return commands_of(*command, last);
   const OptionInfo* argument = argument_of(*command, arguments);
   return argument == nullptr ? Completion{} : values_of(*argument, "", last);

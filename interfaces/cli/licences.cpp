@@ -2,22 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/text.h"
 #include "bentaxis/pump/words.h"
 
 namespace bentaxis::cli {
 namespace {
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 bool is_carried(const Part& part) {
   return part.how == "embedded" || part.how == "static" || part.how == "headers";
@@ -51,11 +44,11 @@ std::string parts_text() {
 }
 
 std::string licence_text(const std::string& part) {
-  if (lower(part) == "bentaxis") return licence_files().at("LICENSE");
+  if (lower_case(part) == "bentaxis") return licence_files().at("LICENSE");
   std::set<std::string> names = {"bentaxis"};
   for (const Part& one : parts()) {
     names.insert(one.name);
-    if (lower(one.name) != lower(part)) continue;
+    if (lower_case(one.name) != lower_case(part)) continue;
     std::string text =
         fmt::format("{} {}: {} ({})\n", one.name, one.version, one.spdx, one.purpose);
     for (const std::string& file : one.texts)

@@ -64,7 +64,7 @@ std::string operating_system() {
   std::ifstream release("/etc/os-release");
   const std::string key = "PRETTY_NAME=";
   for (std::string line; std::getline(release, line);)
-    if (line.rfind(key, 0) == 0) name = line.substr(key.size());
+    if (line.starts_with(key)) name = line.substr(key.size());
   std::erase(name, '"');
   utsname kernel{};
   if (uname(&kernel) != 0) return name;

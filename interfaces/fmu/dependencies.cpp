@@ -336,18 +336,16 @@ class Finder {
     for (const Variable& flag : variables_) {
       if (flag.role != Role::flag) continue;
       std::vector<Dependence>& of = found[flag.reference];
-      const auto begins = [&](const Variable& it, const char* text) {
-        return it.name.rfind(text, 0) == 0;
-      };
       for (const Variable& it : variables_) {
         const bool about =
-            (flag.name == "tooth_contact" && begins(it, "indicator.flank_")) ||
-            (flag.name == "valid_flank" && begins(it, "Rcs_")) ||
-            (flag.name == "valid_film" && begins(it, "Fh_")) ||
-            (flag.name == "valid_point" && (begins(it, "xh_") || begins(it, "yh_"))) ||
-            (flag.name == "valid_thrust" && begins(it, "Rb1_z1_")) ||
+            (flag.name == "tooth_contact" && it.name.starts_with("indicator.flank_")) ||
+            (flag.name == "valid_flank" && it.name.starts_with("Rcs_")) ||
+            (flag.name == "valid_film" && it.name.starts_with("Fh_")) ||
+            (flag.name == "valid_point" &&
+             (it.name.starts_with("xh_") || it.name.starts_with("yh_"))) ||
+            (flag.name == "valid_thrust" && it.name.starts_with("Rb1_z1_")) ||
             ((flag.name == "cavitation" || flag.name == "vapour") &&
-             begins(it, "state.oil.ln_p_") && is_chamber(it));
+             it.name.starts_with("state.oil.ln_p_") && is_chamber(it));
         if (!about) continue;
         if (it.role == Role::state)
           add_all(of, {{it.reference, false}});
@@ -533,10 +531,10 @@ class Finder {
   // Where a chamber meets a port at angle 0 parameters decide, of which only those near the case's
   // are looked at.
   static bool is_of_ports(const Variable& it) {
-    const auto begins = [&](const char* text) { return it.name.rfind(text, 0) == 0; };
-    return begins("der(state.oil.") || begins("state.oil.") || begins("flow_") ||
-           begins("leakage_") || begins("p_") || begins("pressure.") || begins("port_plate.") ||
-           begins("hydraulics.") ||
+    return it.name.starts_with("der(state.oil.") || it.name.starts_with("state.oil.") ||
+           it.name.starts_with("flow_") || it.name.starts_with("leakage_") ||
+           it.name.starts_with("p_") || it.name.starts_with("pressure.") ||
+           it.name.starts_with("port_plate.") || it.name.starts_with("hydraulics.") ||
            (it.role == Role::input && (it.input == Input::suction || it.input == Input::delivery));
   }
 
@@ -586,7 +584,7 @@ class Finder {
       if (it->role == Role::input) compare_start(with_input(*it), it->reference);
     if (!case_.hydraulics) return starts;
     for (const Variable& it : variables_) {
-      const bool oil = it.role == Role::derivative && it.name.rfind("der(state.oil.", 0) == 0;
+      const bool oil = it.role == Role::derivative && it.name.starts_with("der(state.oil.");
       const auto found = direct.find(it.reference);
       if (oil && found != direct.end()) of_oil.insert(found->second.begin(), found->second.end());
       const bool given =
@@ -603,7 +601,7 @@ class Finder {
         of_oil.erase(it->reference);
     if (!hydraulics::starts_periodic(case_)) return starts;
     for (const Variable& it : variables_)
-      if (it.role == Role::state && it.name.rfind("state.oil.", 0) == 0)
+      if (it.role == Role::state && it.name.starts_with("state.oil."))
         starts[it.reference].insert(of_oil.begin(), of_oil.end());
     return starts;
   }

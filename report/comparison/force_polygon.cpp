@@ -30,9 +30,7 @@ struct Family {
   double peak = 0;                 // N, of one of them
 };
 
-std::string acting(const std::string& by) {
-  return by.rfind("piston ", 0) == 0 ? "the pistons" : by;
-}
+std::string acting(const std::string& by) { return by.starts_with("piston ") ? "the pistons" : by; }
 
 // In the order in which they are put tip to tail: what is given from large to small, then what has
 // to be found from small to large, so that the largest reaction closes the polygon.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/text.h"
 #include "document_parts.h"
 
 namespace bentaxis::study {
@@ -54,9 +55,8 @@ report::Section coupling_section(const SimulationResult& r) {
         "estimated error, of peak"},
        {}}};
   for (const auto& [variable, value] : coupling.parameters())
-    section.facts.emplace_back(
-        "parameter " + variable.name,
-        number_text(value) + (variable.unit.empty() ? "" : " " + variable.unit));
+    section.facts.emplace_back("parameter " + variable.name,
+                               number_text(value) + unit_after(variable.unit));
   int number = 0;
   for (const Connection& c : coupling.connections())
     section.facts.emplace_back(fmt::format("connection {}", ++number), arrow(c));

@@ -191,7 +191,7 @@ std::vector<report::Figure> result_figures(const Case& the_case, const SteadySta
   for (const auto& [prefix, port] :
        {std::pair<std::string, std::string>{"as_1_", "suction"}, {"ad_1_", "delivery"}})
     for (const Channel& channel : table.channels)
-      if (channel.name.rfind(prefix, 0) == 0 && channel.name != prefix + "mm2")
+      if (channel.name.starts_with(prefix) && channel.name != prefix + "mm2")
         series(port + channel.meaning.substr(channel.meaning.find(": ")), channel.name);
 
   angle("backflow", "Backflow", "l/min",

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/text.h"
 #include "document_parts.h"
 #include "sweep_sections.h"
 #include "sweep_view.h"
@@ -316,9 +317,9 @@ std::vector<std::string> sweep_answers(const SweepResult& result) {
       answers.push_back(output.name + ": no design has a value.");
       continue;
     }
-    const std::string unit = output.unit.empty() ? "" : " " + output.unit;
     const auto end = [&](const char* word, std::size_t d) {
-      return fmt::format("{} {:.5g}{} ({})", word, view.result(d, k), unit, design_text(d));
+      return fmt::format("{} {:.5g}{} ({})", word, view.result(d, k), unit_after(output.unit),
+                         design_text(d));
     };
     const int direction = view.direction(k);
     answers.push_back(output.name + ": " +

@@ -8,6 +8,7 @@
 
 #include "bentaxis/designs/pareto.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/text.h"
 
 namespace bentaxis::designs {
 namespace {
@@ -57,7 +58,7 @@ std::string SweepView::constant_text(std::size_t output) const {
   if (count < 2) return "";
   const Output& meant = plan().outputs[output];
   return fmt::format("{} is {:.5g}{} in every design: nothing that varies changes it.", meant.name,
-                     *only, meant.unit.empty() ? "" : " " + meant.unit);
+                     *only, unit_after(meant.unit));
 }
 
 const std::string& SweepView::reason(std::size_t design) const { return reasons_[design]; }

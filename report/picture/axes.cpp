@@ -4,18 +4,23 @@
 
 #include <algorithm>
 
+#include "bentaxis/pump/text.h"
+
 namespace bentaxis::report::picture {
 namespace {
 
+// Without zeros at the end of its decimals.
+std::string shortest(std::string number) {
+  if (number.find('.') == std::string::npos) return number;
+  number.resize(number.find_last_not_of('0') + 1);
+  if (number.back() == '.') number.pop_back();
+  return number;
+}
+
 std::string scientific(double value, int digits) {
-  std::string text = fmt::format("{:.{}e}", value, digits - 1);
+  const std::string text = fmt::format("{:.{}e}", value, digits - 1);
   const auto e = text.find('e');
-  std::string mantissa = text.substr(0, e);
-  if (mantissa.find('.') != std::string::npos) {
-    mantissa.resize(mantissa.find_last_not_of('0') + 1);
-    if (mantissa.back() == '.') mantissa.pop_back();
-  }
-  return fmt::format("{}e{}", mantissa, std::stoi(text.substr(e + 1)));
+  return fmt::format("{}e{}", shortest(text.substr(0, e)), std::stoi(text.substr(e + 1)));
 }
 
 // Multiples of 1, 2 or 5 times a power of ten, three at least. No two read alike, none shows
@@ -83,16 +88,11 @@ std::string short_number(double value) {
   const double size = std::abs(value);
   if (value != 0 && (size < 1e-3 || size >= 1e6)) return scientific(value, 3);
   const int digit = value == 0 ? 0 : static_cast<int>(std::floor(std::log10(size)));
-  std::string text = fmt::format("{:.{}f}", value, std::max(0, 2 - digit));
-  if (text.find('.') != std::string::npos) {
-    text.resize(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-  }
-  return text;
+  return shortest(fmt::format("{:.{}f}", value, std::max(0, 2 - digit)));
 }
 
 std::string with_unit(const std::string& text, const std::string& unit) {
-  return unit.empty() ? text : text + " " + unit;
+  return text + unit_after(unit);
 }
 std::string name_of(const Axis& axis) {
   return axis.unit.empty() ? axis.label : fmt::format("{} ({})", axis.label, axis.unit);

@@ -33,7 +33,7 @@ class Reader {
   UnitDescription read() {
     UnitDescription d;
     const std::string version = needed(root_, "fmiVersion");
-    if (version.rfind("2.", 0) != 0 && version.rfind("3.", 0) != 0)
+    if (!version.starts_with("2.") && !version.starts_with("3."))
       fail("fmiVersion = \"" + version + "\": must be 2.0 or 3.0");
     d.version = version[0] - '0';
     d.model_name = plain(root_, "modelName");

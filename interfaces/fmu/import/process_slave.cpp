@@ -177,7 +177,7 @@ class ProcessSlave : public Slave {
     if (version.outcome == Outcome::no_function)
       throw InputError(unit_ + ": its library has no function " + version.text +
                        ", which the standard requires");
-    if (version.text.rfind(std::to_string(version_) + ".", 0) != 0)
+    if (!version.text.starts_with(std::to_string(version_) + "."))
       throw InputError(unit_ + ": its library is of FMI " + version.text + ", its description of " +
                        std::to_string(version_) + ".0");
     const std::string what = name_of(version_ == 2 ? "Instantiate" : "InstantiateCoSimulation");

@@ -42,9 +42,9 @@ bool stays_inside(const std::string& name) {
 }
 
 bool is_needed(const std::string& name) {
-  if (name == kDescription || name.rfind("resources/", 0) == 0) return true;
-  return name.rfind("binaries/" + platform_folder(2) + "/", 0) == 0 ||
-         name.rfind("binaries/" + platform_folder(3) + "/", 0) == 0;
+  if (name == kDescription || name.starts_with("resources/")) return true;
+  return name.starts_with("binaries/" + platform_folder(2) + "/") ||
+         name.starts_with("binaries/" + platform_folder(3) + "/");
 }
 
 struct Close {
@@ -111,7 +111,7 @@ void Unpacked::unpack(const fs::path& file, std::uint64_t most) {
       fail(file, "entry \"" + without_control_characters(name) + "\": holds a control character");
     if (!stays_inside(name))
       fail(file, "entry \"" + name + "\" would be unpacked outside of its directory");
-    if (constexpr std::string_view kBinaries = "binaries/"; name.rfind(kBinaries, 0) == 0) {
+    if (constexpr std::string_view kBinaries = "binaries/"; name.starts_with(kBinaries)) {
       const std::string platform =
           name.substr(kBinaries.size(), name.find('/', kBinaries.size()) - kBinaries.size());
       if (!platform.empty()) add_once(platforms_, platform);

@@ -62,15 +62,6 @@ double& input_of(Inputs& inputs, Input which) {
   return inputs.load_share;
 }
 
-bool operator==(const Inputs& a, const Inputs& b) {
-  return a.speed == b.speed && a.acceleration == b.acceleration && a.torque == b.torque &&
-         a.suction == b.suction && a.delivery == b.delivery && a.load_share == b.load_share &&
-         a.load_share_replaces_curve == b.load_share_replaces_curve &&
-         a.acceleration_given == b.acceleration_given && a.torque_rate == b.torque_rate &&
-         a.suction_rate == b.suction_rate && a.delivery_rate == b.delivery_rate &&
-         a.load_share_rate == b.load_share_rate;
-}
-
 double* rate_of(Inputs& inputs, Input which) {
   switch (which) {
     case Input::torque:

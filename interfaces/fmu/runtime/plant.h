@@ -24,10 +24,11 @@ struct Inputs {
   bool acceleration_given = false;  ///< by whoever sets inputs: else reactions lack inertia by it
   /// Per second, of what lies between two communication points of co-simulation.
   double torque_rate = 0, suction_rate = 0, delivery_rate = 0, load_share_rate = 0;
+
+  bool operator==(const Inputs&) const = default;
 };
 /// The inputs so many seconds later, where nothing new is given.
 void advance(Inputs& inputs, double seconds);
-bool operator==(const Inputs& a, const Inputs& b);
 /// The rate of an input; null where it has none: the shaft's, whose speed has the acceleration.
 double* rate_of(Inputs& inputs, Input which);
 /// The number that an input is; of load_share_replaces_curve that of load_share.
