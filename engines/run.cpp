@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -20,6 +19,7 @@
 
 #include "bentaxis/files/module_folders.h"
 #include "bentaxis/pump/characters.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/stopwatch.h"
 #include "shared_task.h"
@@ -72,35 +72,37 @@ class SharedMemory {
   void* memory_ = nullptr;
 };
 
-void write(const Mechanism& m, const Arrays& to) {
-  const auto put = [](double*& at, const auto& numbers) {
-    at = std::copy(numbers.data(), numbers.data() + numbers.size(), at);
+// Fills the arrays of a task, which an engine only reads.
+void write(const Mechanism& m, bentaxis_engine_task at) {
+  const auto set = [](auto*& array, auto value) { *const_cast<decltype(value)*>(array++) = value; };
+  const auto put = [&](const double*& array, const auto& numbers) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(numbers.size()); ++i)
+      set(array, numbers.data()[i]);
   };
-  Arrays at = to;
   for (std::size_t i = 0; i < m.bodies.size(); ++i) {
     const Body& body = m.bodies[i];
-    *at.parent++ = body.parent;
-    *at.mass++ = body.mass;
+    set(at.parent, body.parent);
+    set(at.mass, body.mass);
     put(at.place, body.place);
     put(at.axes, body.axes);
     put(at.centre, body.centre);
     put(at.inertia, body.inertia);
     for (const Freedom& freedom : body.freedoms) {
-      *at.freedom_body++ = static_cast<std::int32_t>(i);
-      *at.freedom_turns++ = freedom.turns ? 1 : 0;
-      *at.freedom_driven++ = freedom.driven ? 1 : 0;
+      set(at.freedom_body, static_cast<std::int32_t>(i));
+      set(at.freedom_turns, freedom.turns ? 1 : 0);
+      set(at.freedom_driven, freedom.driven ? 1 : 0);
       put(at.freedom_axis, freedom.axis);
     }
   }
   for (const Action& action : m.actions) {
-    *at.action_on++ = action.on;
-    *at.action_by++ = action.by;
+    set(at.action_on, action.on);
+    set(at.action_by, action.by);
   }
-  for (const Support& support : m.supports) *at.support_body++ = support.body;
+  for (const Support& support : m.supports) set(at.support_body, support.body);
   for (const Loop& loop : m.loops) {
-    *at.loop_on++ = loop.on;
-    *at.loop_by++ = loop.by;
-    *at.loop_action++ = loop.action;
+    set(at.loop_on, loop.on);
+    set(at.loop_by, loop.by);
+    set(at.loop_action, loop.action);
     put(at.loop_point_on, loop.point_on);
     put(at.loop_point_by, loop.point_by);
   }
@@ -192,9 +194,7 @@ bool is_engine(const std::string& name) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
   };
   if (name.empty() || !std::all_of(name.begin(), name.end(), is_letter)) return false;
-  const auto& known = known_engines();
-  return std::find(known.begin(), known.end(), name) != known.end() ||
-         !find_file(module_of(name)).empty();
+  return contains(known_engines(), name) || !find_file(module_of(name)).empty();
 }
 
 namespace {
@@ -204,7 +204,7 @@ struct Done {
   std::string failure;
   std::unique_ptr<SharedMemory> memory;
   Shared* shared = nullptr;
-  Arrays arrays{};
+  bentaxis_engine_answer answer{};
   double seconds = 0;
   std::string text() const { return without_control_characters(shared->text); }
 };
@@ -218,12 +218,13 @@ std::string run_in(Done& done, const std::string& name, const Shared& counts, co
            " beside the program or in BENTAXIS_ENGINE_PATH";
   const std::filesystem::path runner = find_file("bentaxis_engine_runner");
   if (runner.empty()) return "cannot be run: there is no bentaxis_engine_runner beside the program";
-  done.memory = std::make_unique<SharedMemory>(lay_out(nullptr, counts, done.arrays));
+  bentaxis_engine_task task = counts.task;
+  done.memory = std::make_unique<SharedMemory>(lay_out(nullptr, task, done.answer));
   const SharedMemory output(1);
   if (done.memory->get() == nullptr || output.get() == nullptr) return "there is no memory for it";
   done.shared = new (done.memory->get()) Shared(counts);
-  lay_out(done.shared, counts, done.arrays);
-  write(m, done.arrays);
+  lay_out(done.shared, task, done.answer);
+  write(m, task);
   const Stopwatch stopwatch;
   const std::optional<int> status =
       run_process(runner.string(), module.string(), done.memory->file(), output.file(), progress);
@@ -256,20 +257,21 @@ Done run_task(const std::string& name, const Shared& counts, const Mechanism& m,
 Answer run_once(const std::string& name, const Mechanism& m, const Progress& progress,
                 const std::optional<Integrated>& integrated) {
   Shared counts;
+  bentaxis_engine_task& task = counts.task;
   const auto count = [](const auto& list) { return static_cast<std::int32_t>(list.size()); };
-  counts.bodies = count(m.bodies);
-  counts.samples = count(m.states);
-  counts.freedoms = count(m.states.front().position);
-  counts.actions = count(m.actions);
-  counts.supports = count(m.supports);
-  counts.loops = count(m.loops);
-  std::copy_n(m.gravity.data(), 3, counts.gravity);
-  counts.length = m.length;
+  task.bodies = count(m.bodies);
+  task.samples = count(m.states);
+  task.freedoms = count(m.states.front().position);
+  task.actions = count(m.actions);
+  task.supports = count(m.supports);
+  task.loops = count(m.loops);
+  std::copy_n(m.gravity.data(), 3, task.gravity);
+  task.length = m.length;
   if (integrated) {
-    counts.request = BENTAXIS_ENGINE_INTEGRATED;
-    counts.interval = integrated->interval;
-    counts.first = integrated->first;
-    counts.every = integrated->every;
+    task.request = BENTAXIS_ENGINE_INTEGRATED;
+    task.interval = integrated->interval;
+    task.first = integrated->first;
+    task.every = integrated->every;
     std::snprintf(counts.settings, sizeof counts.settings, "%s", integrated->settings.c_str());
   }
   const Done done = run_task(name, counts, m, progress);
@@ -280,15 +282,15 @@ Answer run_once(const std::string& name, const Mechanism& m, const Progress& pro
   answer.text = done.text();
   answer.turn_seconds = done.shared->seconds;
   const std::size_t width = m.actions.size() + m.supports.size();
-  const auto row = [&](std::size_t sample) { return done.arrays.values + sample * width; };
+  const auto row = [&](std::size_t sample) { return done.answer.values + sample * width; };
   // A step begins at the last result.
   const std::size_t end = integrated ? m.states.size() - 2 : m.states.size();
-  for (auto sample = static_cast<std::size_t>(counts.first); sample < end;
-       sample += static_cast<std::size_t>(counts.every)) {
+  for (auto sample = static_cast<std::size_t>(task.first); sample < end;
+       sample += static_cast<std::size_t>(task.every)) {
     answer.values.insert(answer.values.end(), row(sample), row(sample + 1));
-    answer.residual = std::max(answer.residual, done.arrays.residual[sample]);
+    answer.residual = std::max(answer.residual, done.answer.residual[sample]);
   }
-  if (std::isnan(*done.arrays.values))
+  if (std::isnan(*done.answer.values))
     answer.failure = name + ": " + answer.text;
   else if (!std::all_of(answer.values.begin(), answer.values.end(),
                         [](double value) { return std::isfinite(value); }))
@@ -324,7 +326,7 @@ Answer run_engine(const std::string& name, const Mechanism& mechanism, const Pro
 
 std::vector<Setting> settings_of(const std::string& name) {
   Shared counts;
-  counts.request = BENTAXIS_ENGINE_SETTINGS;
+  counts.task.request = BENTAXIS_ENGINE_SETTINGS;
   const Done done = run_task(name, counts, {}, [](double) {});
   std::vector<Setting> settings;
   if (!done.failure.empty()) return settings;
@@ -354,8 +356,7 @@ std::string Setting::refusal(const std::string& value) const {
   const std::optional<double> lowest = number_in(least), highest = number_in(most);
   if (!lowest || !highest) {
     const bool is_word = !values.empty() && !number_in(values.front());
-    if (!is_word || std::find(values.begin(), values.end(), value) != values.end()) return "";
-    return fmt::format("one of {}", fmt::join(values, ", "));
+    return !is_word || contains(values, value) ? "" : "one of " + joined(values);
   }
   const std::optional<double> number = number_in(value);
   if (number && *number >= *lowest && *number <= *highest &&
