@@ -29,17 +29,7 @@ constexpr double kRounding = std::numeric_limits<double>::epsilon();
 using Reached = numerics::StiffIntegrator::Reached;
 using Reason = numerics::IntegrationFailure::Reason;
 
-const char* text_of(Reason reason) {
-  switch (reason) {
-    case Reason::tolerance:
-      return "the tolerance is tighter than double precision allows there";
-    case Reason::no_rates:
-      return "the rates of change of motion or pressures are not finite from there on";
-    case Reason::step:
-      break;
-  }
-  return "motion or pressures change too fast there: the step falls below round-off";
-}
+constexpr const char* kStates = "motion or pressures";
 
 }  // namespace
 
@@ -49,11 +39,8 @@ HybridIntegrator::HybridIntegrator(std::string name, Mechanics& mechanics, const
       system_(mechanics, oil, balances),
       integrator_(system_, tolerance),
       edges_(oil.edges_deg()),
-      knots_(mechanics.knots()),
+      knots_(knots_of(mechanics, oil)),
       has_oil_(oil.states() > 0) {
-  const std::vector<double> of_oil = oil.knots();
-  knots_.insert(knots_.end(), of_oil.begin(), of_oil.end());
-  std::sort(knots_.begin(), knots_.end());
   integrals_.assign(static_cast<std::size_t>(system_.integrals()), 0.0);
 }
 
@@ -283,7 +270,7 @@ void HybridIntegrator::keep_going() {
     integrator_.forget_complaint();
   } else if (++short_steps_ > kMaxShortSteps) {
     const std::string complaint = integrator_.complaint();
-    fail(complaint.empty() ? text_of(Reason::step) : complaint);
+    fail(complaint.empty() ? text_of(Reason::step, kStates) : complaint);
   }
 }
 
@@ -305,7 +292,7 @@ void HybridIntegrator::advance(double end) {
   try {
     reached = integrator_.step(stop);
   } catch (const numerics::IntegrationFailure& failure) {
-    fail(text_of(failure.reason()));
+    fail(text_of(failure.reason(), kStates));
   } catch (const ComputationError& error) {
     fail(error.what());
   }

@@ -31,7 +31,6 @@ class HybridIntegrator {
   /// To a state that jumps at time(): of integrals of it, what is not the motion's own.
   void jump(const SystemState& state) { state_ = state; }
   double time() const { return time_; }
-  double step_start() const { return step_start_; }
 
   /// At a time of the last step.
   void state_at(double time, SystemState& state) const;

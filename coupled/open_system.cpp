@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bentaxis/pump/lists.h"
 #include "port_edges.h"
+#include "system.h"
 
 namespace bentaxis::coupled {
 namespace {
@@ -34,9 +36,7 @@ OpenSystem::OpenSystem(Mechanics& mechanics, Oil& oil, bool shaft_from_outside)
       edges_(std::make_unique<PortEdges>(oil.edges_deg())),
       angle_is_state_(shaft_from_outside),
       start_speed_(mechanics.shaft(0, MotionVector{}).speed) {
-  if (mechanics.shaft_is_free()) active_.insert(active_.end(), {kTurn, kTurnRate});
-  if (mechanics.compliant()) active_.insert(active_.end(), {kLag, kLagRate});
-  if (mechanics.has_motor()) active_.insert(active_.end(), {kTwist, kTwistRate});
+  active_ = moving(mechanics);
   const MotionVector scales = mechanics.scales();
   if (angle_is_state_)
     states_.push_back(
@@ -67,10 +67,7 @@ OpenSystem::OpenSystem(Mechanics& mechanics, Oil& oil, bool shaft_from_outside)
     else
       indicators_.push_back(
           {"flank_minus", "m", "approach of the flank that pushes the block backwards"});
-  knots_ = mechanics.knots();
-  const std::vector<double> knots_of_oil = oil.knots();
-  knots_.insert(knots_.end(), knots_of_oil.begin(), knots_of_oil.end());
-  std::sort(knots_.begin(), knots_.end());
+  knots_ = knots_of(mechanics, oil);
   loads_.chamber_pressure.assign(static_cast<std::size_t>(oil.pistons()), 0.0);
   oil_rates_.resize(of_oil.size());
 }
@@ -133,7 +130,7 @@ std::vector<double> OpenSystem::values() const {
     if (index == kTurnRate) value += start_speed_;
     values.push_back(value);
   }
-  values.insert(values.end(), state_.oil.begin(), state_.oil.end());
+  append(values, state_.oil);
   return values;
 }
 
@@ -151,7 +148,7 @@ bool OpenSystem::rates(std::vector<double>& rates) {
   }
   if (!oil_rates_.empty() && !oil_.rates(time_, shaft, block, state_.oil.data(), oil_rates_.data()))
     return false;
-  rates.insert(rates.end(), oil_rates_.begin(), oil_rates_.end());
+  append(rates, oil_rates_);
   return std::all_of(rates.begin(), rates.end(), [](double v) { return std::isfinite(v); });
 }
 

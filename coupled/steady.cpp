@@ -82,23 +82,12 @@ class PeriodMap {
 
   Eigen::VectorXd scaled(const SystemState& s) const {
     Eigen::VectorXd u(unknowns());
-    Eigen::Index i = 0;
-    for (const std::size_t index : motions_) u[i++] = s.motion[index];
-    for (const double value : s.oil) u[i++] = value;
-    for (i = 0; i < u.size(); ++i) u[i] /= scale_[static_cast<std::size_t>(i)];
+    pack(s, motions_, scale_, u.data());
     return u;
   }
   SystemState state(const Eigen::VectorXd& u) const {
     SystemState s{mechanics_.start(), oil_.start()};
-    std::size_t i = 0;
-    for (const std::size_t index : motions_) {
-      s.motion[index] = u[static_cast<Eigen::Index>(i)] * scale_[i];
-      ++i;
-    }
-    for (double& value : s.oil) {
-      value = u[static_cast<Eigen::Index>(i)] * scale_[i];
-      ++i;
-    }
+    unpack(u.data(), motions_, scale_, s);
     on_section(s);
     return s;
   }

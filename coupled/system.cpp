@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::coupled {
@@ -27,12 +28,44 @@ bool all_finite(const double* values, std::size_t count) {
 
 }  // namespace
 
+std::vector<std::size_t> moving(const Mechanics& mechanics) {
+  std::vector<std::size_t> states;
+  if (mechanics.shaft_is_free()) states.insert(states.end(), {kTurn, kTurnRate});
+  if (mechanics.compliant()) states.insert(states.end(), {kLag, kLagRate});
+  if (mechanics.has_motor()) states.insert(states.end(), {kTwist, kTwistRate});
+  return states;
+}
+
+std::vector<double> knots_of(const Mechanics& mechanics, const Oil& oil) {
+  std::vector<double> knots = mechanics.knots();
+  append(knots, oil.knots());
+  std::sort(knots.begin(), knots.end());
+  return knots;
+}
+
+void pack(const SystemState& state, const std::vector<std::size_t>& motions,
+          const std::vector<double>& scale, double* y) {
+  std::size_t i = 0;
+  const auto put = [&](double value) { y[i] = value / scale[i], ++i; };
+  for (const std::size_t index : motions) put(state.motion[index]);
+  for (const double value : state.oil) put(value);
+}
+
+void unpack(const double* y, const std::vector<std::size_t>& motions,
+            const std::vector<double>& scale, SystemState& state) {
+  std::size_t i = 0;
+  const auto take = [&](double& value) { value = y[i] * scale[i], ++i; };
+  for (const std::size_t index : motions) take(state.motion[index]);
+  for (double& value : state.oil) take(value);
+}
+
 System::System(Mechanics& mechanics, const Oil& oil, bool balances)
-    : mechanics_(mechanics), oil_(oil), balances_(balances), contacts_(mechanics.contacts()) {
+    : mechanics_(mechanics),
+      oil_(oil),
+      balances_(balances),
+      active_(moving(mechanics)),
+      contacts_(mechanics.contacts()) {
   const MotionVector scales = mechanics.scales();
-  if (mechanics.shaft_is_free()) active_.insert(active_.end(), {kTurn, kTurnRate});
-  if (mechanics.compliant()) active_.insert(active_.end(), {kLag, kLagRate});
-  if (mechanics.has_motor()) active_.insert(active_.end(), {kTwist, kTwistRate});
   motions_ = static_cast<int>(active_.size());
   if (balances) {
     active_.insert(active_.end(), {kWorkOfLoads, kWorkOfDrive});
@@ -67,22 +100,11 @@ System::System(Mechanics& mechanics, const Oil& oil, bool balances)
 
 void System::scaled(const SystemState& state, std::vector<double>& y) const {
   y.resize(scale_.size());
-  std::size_t i = 0;
-  for (const std::size_t index : active_) y[i++] = state.motion[index];
-  for (const double value : state.oil) y[i++] = value;
-  for (i = 0; i < y.size(); ++i) y[i] /= scale_[i];
+  pack(state, active_, scale_, y.data());
 }
 
 void System::unscaled(const double* y, SystemState& state) const {
-  std::size_t i = 0;
-  for (const std::size_t index : active_) {
-    state.motion[index] = y[i] * scale_[i];
-    ++i;
-  }
-  for (double& value : state.oil) {
-    value = y[i] * scale_[i];
-    ++i;
-  }
+  unpack(y, active_, scale_, state);
 }
 
 std::vector<int> System::event_functions() const {

@@ -29,22 +29,22 @@ void check(int flag) {
   throw IntegrationFailure(Reason::step);
 }
 
-const char* text_of(Reason reason) {
+}  // namespace
+
+std::string text_of(Reason reason, const std::string& states) {
   switch (reason) {
     case Reason::tolerance:
       return "the tolerance is tighter than double precision allows there";
     case Reason::no_rates:
-      return "the rates of change of the states are not finite from there on";
+      return "the rates of change of " + states + " are not finite from there on";
     case Reason::step:
       break;
   }
-  return "the states change too fast there: the step falls below round-off";
+  return states + " change too fast there: the step falls below round-off";
 }
 
-}  // namespace
-
 IntegrationFailure::IntegrationFailure(Reason reason)
-    : std::runtime_error(text_of(reason)), reason_(reason) {}
+    : std::runtime_error(text_of(reason, "the states")), reason_(reason) {}
 
 std::string sundials_version() {
   char text[32] = "";

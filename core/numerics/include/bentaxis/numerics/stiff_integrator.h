@@ -53,6 +53,10 @@ class IntegrationFailure : public std::runtime_error {
   Reason reason_;
 };
 
+/// Why an integration fails.
+/// @param states  what is integrated, "the states"
+std::string text_of(IntegrationFailure::Reason reason, const std::string& states);
+
 /// Sensitivities that are integrated beside the states.
 struct Sensitivities {
   int count = 0;
