@@ -10,6 +10,7 @@
 
 #include "bentaxis/pump/delivery_side.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/time_signal.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/trajectory.h"
@@ -74,10 +75,7 @@ class OilInTime : public Oil {
           const double at = std::fmod(edge + network_.period_deg() * k, 360);
           edges.push_back(at > 360 - kOne ? 0 : at);
         }
-    std::sort(edges.begin(), edges.end());
-    edges.erase(
-        std::unique(edges.begin(), edges.end(), [](double a, double b) { return b - a < kOne; }),
-        edges.end());
+    sort_once(edges, kOne);
     return edges;
   }
 
@@ -252,12 +250,8 @@ class OilInTime : public Oil {
 }  // namespace
 
 bool starts_periodic(const Case& the_case) {
-  const DriveSpec& drive = drive_of(the_case);
   const double speed = rad_per_second(the_case.operation.speed_rpm);
-  const bool by_curve = drive.kind == DriveKind::speed && !drive.curve.time.empty();
-  const double start =
-      by_curve ? TimeSignal(drive.curve).value(0) : drive.start_speed.value_or(speed);
-  return speed != 0 && start == speed;
+  return speed != 0 && start_speed(drive_of(the_case), speed) == speed;
 }
 
 bool needs_periodic_state(const Case& the_case) {

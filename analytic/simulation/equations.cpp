@@ -23,12 +23,6 @@ PumpParameters with_ideal_rings(PumpParameters pump) {
   return with_flanks(pump);
 }
 
-double start_speed_of(const Case& the_case, const std::optional<TimeSignal>& curve) {
-  const DriveSpec& drive = *the_case.drive;
-  if (drive.kind == DriveKind::speed && curve) return curve->value(0);
-  return drive.start_speed.value_or(rad_per_second(the_case.operation.speed_rpm));
-}
-
 std::optional<TimeSignal> curve_of(const DriveSpec& drive) {
   if (drive.curve.time.empty()) return {};
   return TimeSignal(drive.curve);
@@ -65,7 +59,7 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
                       closed_form::WallMode::by_law);
   }
   if (the_case.pump.gear.contact == ToothContact::teeth) bevel_.emplace(the_case.pump);
-  start_speed_ = start_speed_of(the_case, curve_);
+  start_speed_ = start_speed(*the_case.drive, rad_per_second(the_case.operation.speed_rpm));
   values_.resize(model_.layout().size());
   instant_.chamber_pressure.resize(model_.layout().pistons());
   instant_.ports = the_case.pressure.ports;

@@ -4,6 +4,7 @@
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/time_signal.h"
 
 namespace bentaxis {
 
@@ -60,6 +61,12 @@ MotionTable teeth_table_of(const Trajectory& run, const Gear& gear) {
     append_teeth(table.results, run.table.results.theta_deg[row], gear, run.teeth[row]);
   }
   return table;
+}
+
+double start_speed(const DriveSpec& drive, double usual) {
+  if (drive.kind == DriveKind::speed && !drive.curve.time.empty())
+    return TimeSignal(drive.curve).value(0);
+  return drive.start_speed.value_or(usual);
 }
 
 const DriveSpec& drive_of(const Case& the_case) {

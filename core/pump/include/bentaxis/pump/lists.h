@@ -5,6 +5,7 @@
 #include <iterator>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 namespace bentaxis {
 
@@ -28,6 +29,19 @@ void append(List& list, More&& more) {
   else
     list.insert(list.end(), std::make_move_iterator(std::begin(more)),
                 std::make_move_iterator(std::end(more)));
+}
+
+/// Sorts a list and leaves one of what is the same.
+template <class List>
+void sort_once(List& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+/// Of numbers, one of those that are nearer to the one before than `gap`.
+inline void sort_once(std::vector<double>& list, double gap) {
+  std::sort(list.begin(), list.end());
+  const auto near = [gap](double a, double b) { return b - a < gap; };
+  list.erase(std::unique(list.begin(), list.end(), near), list.end());
 }
 
 /// The texts of a list in one, with a separator between them.

@@ -127,6 +127,10 @@ MotionTable teeth_table_of(const Trajectory& run, const Gear& gear);
 /// pump: dry friction that jumps (`regularization_m_per_s` = 0) where speeds may vanish.
 const DriveSpec& drive_of(const Case& the_case);
 
+/// Speed of the shaft at the start, rad/s.
+/// @param usual  where the drive does not say
+double start_speed(const DriveSpec& drive, double usual);
+
 /// Whether dry friction jumps and the motion depends on it: `regularization_m_per_s` = 0 of a shaft
 /// or a block that moves freely.
 bool friction_jumps(const Case& the_case);
