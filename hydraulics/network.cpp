@@ -9,6 +9,7 @@
 #include "bentaxis/numerics/bisection.h"
 #include "bentaxis/pump/delivery_side.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/pump/validate.h"
@@ -147,10 +148,7 @@ Network::Network(const Case& the_case, Use use)
       const double within = backwards() ? period_deg() - turned : turned;
       if (within > kSameEdge && within < period_deg() - kSameEdge) edges_deg_.push_back(within);
     }
-  std::sort(edges_deg_.begin(), edges_deg_.end());
-  edges_deg_.erase(std::unique(edges_deg_.begin(), edges_deg_.end(),
-                               [](double a, double b) { return b - a < kSameEdge; }),
-                   edges_deg_.end());
+  sort_once(edges_deg_, kSameEdge);
 }
 
 Network::~Network() = default;
@@ -322,8 +320,7 @@ Stored Network::stored(const Moment& now, const double* y) const {
 std::vector<Place> Network::places() const {
   std::vector<Place> all = {Place::tank, Place::load};
   for (const auto& element : elements_) element->places(all);
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
+  sort_once(all);
   return all;
 }
 

@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::hydraulics {
@@ -211,11 +212,8 @@ double PortOpening::area(double theta_deg) const {
 
 std::vector<Bridge> bridges(const PortOpening& suction, const PortOpening& delivery) {
   std::vector<double> edges = suction.edges_deg();
-  edges.insert(edges.end(), delivery.edges_deg().begin(), delivery.edges_deg().end());
-  std::sort(edges.begin(), edges.end());
-  edges.erase(
-      std::unique(edges.begin(), edges.end(), [](double a, double b) { return b - a < kOneEdge; }),
-      edges.end());
+  append(edges, delivery.edges_deg());
+  sort_once(edges, kOneEdge);
   if (edges.empty()) edges = {0};
   std::vector<Bridge> all;
   for (std::size_t i = 0; i < edges.size(); ++i) {

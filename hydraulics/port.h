@@ -56,9 +56,7 @@ class PortOpening {
     double past(double theta_deg) const;
     double trailing(double past) const { return past - 2 * half_; }
     double half() const { return half_; }
-    bool operator==(const Frame& other) const {
-      return first_ == other.first_ && half_ == other.half_;
-    }
+    bool operator==(const Frame& other) const = default;
 
    private:
     double first_, half_;

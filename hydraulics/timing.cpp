@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/units.h"
 #include "boole.h"
 #include "timing_record.h"
@@ -54,8 +55,7 @@ Timing::Trapped trapped(const Network& network, const Bridge& bridge) {
 // Where the longest stretch ends that is open to the suction port alone.
 std::optional<double> end_of_suction(const Network& network) {
   std::vector<double> edges = network.suction().edges_deg();
-  const auto& others = network.delivery().edges_deg();
-  edges.insert(edges.end(), others.begin(), others.end());
+  append(edges, network.delivery().edges_deg());
   std::sort(edges.begin(), edges.end());
   if (edges.empty()) return std::nullopt;
   double length = 0, longest = 0;

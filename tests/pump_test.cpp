@@ -421,6 +421,11 @@ TEST(Lists, AreSearchedJoinedAndExtended) {
   append(list, std::vector<std::string>{"e"});
   EXPECT_EQ(joined(list, ""), "abcde");
   EXPECT_EQ(more[0], "d");
+  std::vector<double> numbers = {3, 1, 2.5, 1, 2};
+  sort_once(numbers);
+  EXPECT_EQ(numbers, (std::vector<double>{1, 2, 2.5, 3}));
+  sort_once(numbers, 0.75);
+  EXPECT_EQ(numbers, (std::vector<double>{1, 2, 3}));
 }
 
 TEST(Texts, AreTrimmedLoweredAndReplaced) {
