@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <iterator>
@@ -13,6 +12,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/validate.h"
+#include "bentaxis/results/stopwatch.h"
 #include "closed_form/bevel.h"
 #include "closed_form/reactions.h"
 #include "kinematics.h"
@@ -411,10 +411,9 @@ Model::FrictionPower Model::friction_power(const Instant& instant, double drive_
 namespace {
 
 // How a table was made.
-void note(Provenance& provenance, std::chrono::steady_clock::time_point start, int n,
+void note(Provenance& provenance, const Stopwatch& stopwatch, int n,
           const std::string& kinematics) {
-  provenance.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  provenance.seconds = stopwatch.seconds();
   provenance.facts = {
       {"method",
        "closed form: equilibrium of pistons (31)-(33), block (56), (57), shaft (42), (43)"},
@@ -449,7 +448,7 @@ class TeethRows {
 
 ResultTable run(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
                 const Progress& progress, ResultTable* teeth) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   const Model model(validate(the_case).pump, assumptions);
   require_constant_speed(the_case);
   require_free_play(the_case);
@@ -462,7 +461,7 @@ ResultTable run(const Case& the_case, const Assumptions& assumptions, const Samp
         acting.add(samples.theta_deg[acting.rows()]);
       },
       progress);
-  note(table.provenance, start, model.layout().pistons(),
+  note(table.provenance, stopwatch, model.layout().pistons(),
        "exact derivatives with respect to theta (9)-(23)");
   if (the_case.pump.transfer.kind == TransferKind::pistons)
     table.provenance.facts.emplace_back("frozen lag", placed.rules().text());
@@ -471,7 +470,7 @@ ResultTable run(const Case& the_case, const Assumptions& assumptions, const Samp
 
 MotionTable run_states(const Case& the_case, const Assumptions& assumptions, const States& states,
                        const Progress& progress, ResultTable* teeth) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   const Model model(validate(the_case).pump, assumptions);
   TeethRows acting(model, the_case.pump.gear, teeth);
   MotionTable table = tabulate_states(
@@ -481,7 +480,7 @@ MotionTable run_states(const Case& the_case, const Assumptions& assumptions, con
         acting.add(states.motion[acting.rows()].theta_deg);
       },
       progress);
-  note(table.results.provenance, start, model.layout().pistons(),
+  note(table.results.provenance, stopwatch, model.layout().pistons(),
        "exact total time derivatives of (9)-(12), with separate angles of shaft and block");
   return table;
 }

@@ -1,7 +1,6 @@
 #include "bentaxis/designs/uncertainty.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "bentaxis/files/csv_rows.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/results/stopwatch.h"
 #include "bentaxis/study/failed_point.h"
 
 namespace bentaxis::designs {
@@ -179,7 +179,7 @@ void check_sampling(const Case& the_case, std::size_t samples, double level) {
 
 UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& options,
                               const study::PartProgress& progress_of) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   check_sampling(the_case, options.samples, options.level);
   UncertaintyResult result;
   result.the_case = the_case;
@@ -246,7 +246,7 @@ UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& op
         outputs, variables, options.sobol, options.seed, options.threads,
         progress_of("Sobol indices"));
   }
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.seconds = stopwatch.seconds();
   return result;
 }
 
