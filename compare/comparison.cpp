@@ -7,6 +7,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/results/column_values.h"
 
 namespace bentaxis::compare {
 namespace {
@@ -291,11 +292,8 @@ std::vector<Check> judge_checks(const ResultTable& table, const ZeroScales& scal
   std::vector<Check> checks;
   for (std::size_t column = 0; column < table.columns(); ++column) {
     const Channel& channel = table.channels[column];
-    if (channel.kind != ChannelKind::check) continue;
-    bool computed = false;  // a check that nobody computed has not been passed
-    for (std::size_t row = 0; row < table.rows() && !computed; ++row)
-      computed = is_computed(table.at(row, column));
-    if (!computed) continue;
+    // A check that nobody computed has not been passed.
+    if (channel.kind != ChannelKind::check || !any_computed(table, column)) continue;
     auto it = std::find_if(checks.begin(), checks.end(),
                            [&](const Check& check) { return check.name == channel.meaning; });
     if (it == checks.end()) {

@@ -14,10 +14,12 @@
 #include "bentaxis/files/input_file.h"
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/periodic_spline.h"
 #include "bentaxis/pump/unit_of_measure.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/results/column_values.h"
 
 namespace bentaxis::compare {
 namespace fs = std::filesystem;
@@ -82,21 +84,26 @@ double read_unit(TableReader& in, const std::string& unit) {
   if (unit.empty()) return 0;
   const auto it = units().find(unit);
   if (it == units().end()) {
-    std::string known;
-    for (const auto& [name, value] : units()) known += (known.empty() ? "" : ", ") + name;
-    in.fail("unit", "must be one of " + known);
+    const auto name_of = [](const auto& one) { return one.first; };
+    in.fail("unit", "must be one of " + joined(units(), ", ", name_of));
   }
   return it->second.si;
 }
 
-ColumnMap read_column(TableReader in) {
-  ColumnMap map;
-  map.theirs = in.text("theirs");
+// What a column or a vector of theirs is of ours.
+template <class Map>
+void read_ours(TableReader& in, Map& map) {
   map.ours = in.text("ours");
   map.unit = in.text("unit", "");
   map.unit_in_si = read_unit(in, map.unit);
   map.factor = read_factor(in);
   in.finish();
+}
+
+ColumnMap read_column(TableReader in) {
+  ColumnMap map;
+  map.theirs = in.text("theirs");
+  read_ours(in, map);
   return map;
 }
 
@@ -107,11 +114,7 @@ VectorMap read_vector(TableReader in) {
     in.fail("theirs",
             "must be three columns, x, y and z of the file; \"\" for one that it does not have");
   std::copy(theirs.begin(), theirs.end(), map.theirs.begin());
-  map.ours = in.text("ours");
-  map.unit = in.text("unit", "");
-  map.unit_in_si = read_unit(in, map.unit);
-  map.factor = read_factor(in);
-  in.finish();
+  read_ours(in, map);
   return map;
 }
 
@@ -191,8 +194,7 @@ CurveDescription read_curve(TableReader in, const fs::path& folder) {
   curve.points = in.integer("points", 3, std::numeric_limits<int>::max());
   curve.models = in.texts("models");
   for (const auto& model : curve.models)
-    if (std::find(kModels.begin(), kModels.end(), model) == kModels.end())
-      in.fail("models", "must be \"analytic\", \"multibody\" or both");
+    if (!contains(kModels, model)) in.fail("models", "must be \"analytic\", \"multibody\" or both");
   if (curve.models.empty()) curve.models = kModels;
   curve.sheet = in.text("sheet", "");
   curve.guessed = in.flag("guessed", false);
@@ -226,12 +228,6 @@ std::size_t find_angle(const std::vector<double>& theta, double angle, double sa
 double reduced(double theta_deg) {
   const double angle = wrap_degrees(theta_deg);
   return angle > 360 - kSameAngle ? 0 : angle;
-}
-
-std::vector<double> column_of(const ResultTable& table, std::size_t column) {
-  std::vector<double> values;
-  for (std::size_t row = 0; row < table.rows(); ++row) values.push_back(table.at(row, column));
-  return values;
 }
 
 // A value on the straight line between two points.
@@ -511,7 +507,7 @@ void append_columns(ResultTable& table, const ResultTable& more) {
     for (std::size_t c = 0; c < more.columns(); ++c) values.push_back(more.at(row, c));
   }
   table.values = std::move(values);
-  table.channels.insert(table.channels.end(), more.channels.begin(), more.channels.end());
+  append(table.channels, more.channels);
   table.theta_deg = more.theta_deg;
 }
 
@@ -650,11 +646,7 @@ std::vector<std::string> assumptions_of(const CurveDescription& curve) {
     add(column.theirs, column.ours, column.factor, column.unit);
   for (const auto& [meaning, list] : meanings)
     lines.push_back("assumed, times " + meaning + ": " + list);
-  if (!curve.ignored.empty()) {
-    std::string list;
-    for (const auto& name : curve.ignored) list += (list.empty() ? "" : ", ") + name;
-    lines.push_back("assumed to be no result: " + list);
-  }
+  if (!curve.ignored.empty()) lines.push_back("assumed to be no result: " + joined(curve.ignored));
   return lines;
 }
 
@@ -977,15 +969,10 @@ Judgement judge(const ReferenceDescription& description, const std::vector<Refer
   Judgement judgement;
   judgement.resampled = !reference.exact;
   judgement.resampling_error = reference.error;
-  const auto computed = [](const ResultTable& table, std::size_t column) {
-    for (std::size_t row = 0; column < table.columns() && row < table.rows(); ++row)
-      if (is_computed(table.at(row, column))) return true;
-    return false;
-  };
   for (std::size_t column = 0; column < result.columns(); ++column) {
     const Channel& channel = result.channels[column];
     const std::size_t stored = reference.middle.find(channel.name);
-    const bool there = computed(reference.middle, stored);
+    const bool there = any_computed(reference.middle, stored);
     if (channel.kind == ChannelKind::check || (channel.kind == ChannelKind::input && !there))
       continue;
     ReferenceChannel entry;
@@ -993,15 +980,15 @@ Judgement judge(const ReferenceDescription& description, const std::vector<Refer
     entry.comparison.channel = channel;
     if (!there) {
       const bool wanted = description.must_be_complete() && channel.kind == ChannelKind::reaction &&
-                          computed(result, column);
-      entry.finding = !computed(result, column) ? Finding::absent
-                      : wanted                  ? Finding::incomplete
-                                                : Finding::missing;
+                          any_computed(result, column);
+      entry.finding = !any_computed(result, column) ? Finding::absent
+                      : wanted                      ? Finding::incomplete
+                                                    : Finding::missing;
       if (wanted) entry.hint = "the reference does not have it";
     } else if (!entry.comparison.compared()) {
       entry.finding = Finding::incomplete;
-      entry.hint = computed(result, column) ? "one of them has gaps where the other has values"
-                                            : "the model did not compute it";
+      entry.hint = any_computed(result, column) ? "one of them has gaps where the other has values"
+                                                : "the model did not compute it";
     } else {
       const bool agrees = entry.comparison.verdict == Verdict::agrees;
       entry.finding = agrees ? Finding::agrees : Finding::differs;

@@ -15,6 +15,7 @@
 #include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/results/column_values.h"
 #include "bentaxis/study/achieved_error.h"
 #include "bentaxis/study/efficiency.h"
 #include "bentaxis/study/engine_comparison.h"
@@ -29,9 +30,8 @@ std::string of_table(const compare::Check& check) { return check.table + ": " + 
 
 double largest_of(const compare::Comparison& comparison,
                   std::initializer_list<std::string> groups) {
-  const auto* const found = comparison.furthest([&](const Channel& channel) {
-    return std::find(groups.begin(), groups.end(), channel.group) != groups.end();
-  });
+  const auto* const found =
+      comparison.furthest([&](const Channel& channel) { return contains(groups, channel.group); });
   return found == nullptr ? 0 : found->largest_over_peak();
 }
 
@@ -44,10 +44,10 @@ std::string small_components(const compare::Comparison& comparison) {
     auto& least = smallest[c.channel.quantity + "_" + c.channel.axis];
     if (least == nullptr || c.own_peak / c.peak < least->own_peak / least->peak) least = &c;
   }
-  std::string text;
-  for (const auto& [name, c] : smallest)
-    text += fmt::format("{}{} ({:.1e} of itself)", text.empty() ? "" : ", ", name,
-                        c->allowed / c->own_peak);
+  const std::string text = joined(smallest, ", ", [](const auto& one) {
+    return fmt::format("{} ({:.1e} of itself)", one.first,
+                       one.second->allowed / one.second->own_peak);
+  });
   if (text.empty()) return text;
   return fmt::format(
       "below {:g} of the peak of their vector, to which differences are relative, so that errors "
@@ -316,7 +316,7 @@ void Maker::compare_tables() {
   if (!analytic_budget_) return;
   r.budget = compare_budgets(std::move(*analytic_budget_), std::move(*multibody_budget_),
                              r.tolerance, zero_scales_);
-  r.checks.insert(r.checks.end(), r.budget->checks.begin(), r.budget->checks.end());
+  append(r.checks, r.budget->checks);
   r.budget->analytic_oil = pump_power(r.first, progress_of_("power of the oil"));
   // Both models get the same oil, unless they are given different cases.
   const bool same = r.first.hydraulics && r.second.hydraulics &&
@@ -438,8 +438,8 @@ ResultTable torque_of_gear(const PreparedCase& ready, const Samples& samples,
       whole = std::move(torque);
       continue;
     }
-    whole.theta_deg.insert(whole.theta_deg.end(), torque.theta_deg.begin(), torque.theta_deg.end());
-    whole.values.insert(whole.values.end(), torque.values.begin(), torque.values.end());
+    append(whole.theta_deg, torque.theta_deg);
+    append(whole.values, torque.values);
     whole.provenance.seconds += torque.provenance.seconds;
   }
   return whole;
@@ -504,10 +504,7 @@ void Maker::run_without_viscous(const PartProgress& progress_of) {
 void Maker::hold_to_reference() {
   ComparisonResult& r = result_;
   const auto computed = [](const ResultTable& table, const Channel& channel) {
-    const std::size_t column = table.find(channel.name);
-    for (std::size_t row = 0; row < table.rows(); ++row)
-      if (is_computed(table.at(row, column))) return true;
-    return false;
+    return any_computed(table, table.find(channel.name));
   };
   r.with = hold_results(
       r.options.with,
@@ -590,7 +587,7 @@ void Maker::note_multiplier_errors() {
       const BudgetComparison budgets =
           compare_budgets(r.budget->multibody, *other.budget, r.tolerance, zero_scales_);
       keep(budgets.comparison);
-      checks.insert(checks.end(), budgets.checks.begin(), budgets.checks.end());
+      append(checks, budgets.checks);
     }
     // Of a check that holds there: all that it is off by here.
     for (const auto& check : r.checks)
@@ -655,9 +652,9 @@ std::vector<std::string> carried_by(const std::string& group) {
 
 // Of a column of the budgets: the whole that it is a part of.
 std::string whole_of(const std::string& column) {
-  return column.rfind("Tcs_", 0) == 0  ? "parts of Tcs"
-         : column.rfind("Td_", 0) == 0 ? "parts of Td"
-                                       : "Fh";
+  return column.starts_with("Tcs_")  ? "parts of Tcs"
+         : column.starts_with("Td_") ? "parts of Td"
+                                     : "Fh";
 }
 
 std::vector<Failure> failures_of(const ComparisonResult& r) {

@@ -11,11 +11,13 @@
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/validity.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/pump/words.h"
 #include "bentaxis/results/budget.h"
 #include "bentaxis/results/channels.h"
+#include "bentaxis/results/column_values.h"
 #include "bentaxis/study/bearing_life.h"
 #include "bentaxis/study/efficiency.h"
 #include "bentaxis/study/motion_answers.h"
@@ -68,8 +70,7 @@ bool can_be_asked_for(const Channel& c) { return c.kind != ChannelKind::check; }
 bool find_channels(const std::string& wanted, const std::vector<Channel>& channels, Output& o) {
   for (std::size_t i = 0; i < channels.size(); ++i) {
     if (!can_be_asked_for(channels[i])) continue;
-    const auto names = names_of(channels[i]);
-    if (std::find(names.begin(), names.end(), wanted) == names.end()) continue;
+    if (!contains(names_of(channels[i]), wanted)) continue;
     o.columns = {i};
     o.item = channels[i].name;
     o.unit = channels[i].unit;
@@ -126,6 +127,14 @@ const LifeEntry kLives[] = {
 };
 bool has_ratings(const Case& the_case) {
   return the_case.ratings.tapered && the_case.ratings.cylindrical;
+}
+
+// Of the entry of this name.
+template <std::size_t size, class Entry, class Of>
+double value_in(const Entry (&entries)[size], const std::string& name, const Of& of) {
+  for (const Entry& e : entries)
+    if (name == e.name) return e.value(of);
+  return not_computed();
 }
 
 struct MotionEntry {
@@ -309,9 +318,8 @@ std::vector<std::string> output_names(const Case& base) {
   for (const Channel& c : layout.channels()) {  // vectors
     Output o;
     const std::string name = vector_name(c);
-    if (c.piston <= 1 && find_channels(name, layout.channels(), o) && o.columns.size() > 1 &&
-        std::find(names.begin(), names.end(), "peak:" + name) == names.end())
-      names.push_back("peak:" + name);
+    if (c.piston <= 1 && find_channels(name, layout.channels(), o) && o.columns.size() > 1)
+      add_once(names, "peak:" + name);
   }
   for (const Channel& c : budget_channels(base))
     if (can_be_asked_for(c)) names.push_back("mean:budget." + c.name);
@@ -415,9 +423,7 @@ class Turn {
   }
   double efficiency(const Output& o) {
     const std::size_t column = ChannelLayout(ready_.the_case.pump).Td();
-    std::vector<double> torque;
-    for (std::size_t row = 0; row < run_.table.rows(); ++row)
-      torque.push_back(run_.table.at(row, column));
+    const std::vector<double> torque = column_of(run_.table, column);
     if (!oil_) oil_ = study::pump_power(ready_);
     const study::Efficiencies all =
         study::efficiencies(ready_, oil_, statistic_of(Statistic::mean, torque));
@@ -429,9 +435,7 @@ class Turn {
   double life(const Output& o) {
     const Case& the_case = ready_.the_case;
     if (!life_) life_ = study::pump_life(the_case, {study::life_point(the_case, run_.table)});
-    for (const LifeEntry& e : kLives)
-      if (o.item == e.name) return e.value(*life_);
-    return not_computed();
+    return value_in(kLives, o.item, *life_);
   }
 
   const study::PreparedCase& ready_;
@@ -445,9 +449,7 @@ class Turn {
 }  // namespace
 
 double derived_value(const Output& output, const analytic::DerivedQuantities& derived) {
-  for (const DerivedEntry& d : kDerived)
-    if (output.item == d.name) return d.value(derived);
-  return not_computed();
+  return value_in(kDerived, output.item, derived);
 }
 
 double derived_value(const Output& output, const PumpParameters& pump) {
@@ -483,12 +485,6 @@ study::MotionAnswers motion_of(const Case& the_case, study::Model model) {
                                the_case);
 }
 
-double motion_value(const Output& o, const study::MotionAnswers& answers) {
-  for (const MotionEntry& e : kMotion)
-    if (o.item == e.name) return e.value(answers);
-  return not_computed();
-}
-
 // @param prepared  the case made ready, which costs what it takes where it is asked for first
 std::vector<double> values_of(const std::vector<Output>& outputs, const Case& the_case,
                               const std::function<const study::PreparedCase&()>& prepared,
@@ -520,7 +516,7 @@ std::vector<double> values_of(const std::vector<Output>& outputs, const Case& th
           static_cast<double>(study::plausibility(prepared().the_case).warnings.size()));
     } else if (o.source == Source::motion) {
       if (!motion) motion = motion_of(the_case, model);
-      values.push_back(motion_value(o, *motion));
+      values.push_back(value_in(kMotion, o.item, *motion));
     } else {
       if (!turn) turn.emplace(prepared(), model, budget);
       values.push_back(turn->value(o));

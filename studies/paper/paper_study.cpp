@@ -10,6 +10,7 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/results/column_values.h"
 #include "bentaxis/study/fig34.h"
 #include "bentaxis/study/inertia.h"
 #include "bentaxis/study/operating_points.h"
@@ -19,10 +20,7 @@ namespace bentaxis::study {
 namespace {
 
 std::vector<double> values_of(const ResultTable& table, const std::string& name) {
-  std::vector<double> values;
-  const std::size_t column = table.find(name);
-  for (std::size_t row = 0; row < table.rows(); ++row) values.push_back(table.at(row, column));
-  return values;
+  return column_of(table, table.find(name));
 }
 
 Model the_other(Model model) {
