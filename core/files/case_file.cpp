@@ -10,8 +10,10 @@
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/full_key.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/registry.h"
+#include "bentaxis/pump/text.h"
 #include "bentaxis/pump/words.h"
 
 namespace bentaxis {
@@ -23,12 +25,8 @@ constexpr const char* kUncertainty = "uncertainty";  // the table whose keys are
 std::set<std::string> numbers_of(const Registry& registry) {
   std::set<std::string> names;
   for (const Table& table : registry.tables)
-    for (const Parameter& parameter : table.parameters) {
-      const std::string name = table.name + "." + parameter.key;
-      if (std::holds_alternative<NumberField>(parameter.field)) names.insert(name);
-      if (std::holds_alternative<PairField>(parameter.field))
-        names.insert({name + ".1", name + ".2"});
-    }
+    for (const Parameter& parameter : table.parameters)
+      for (const std::string& name : number_names(table, parameter)) names.insert(name);
   return names;
 }
 
@@ -230,32 +228,22 @@ class CaseReader {
     store(parameter, result_, file.string());
     if (field.opening != nullptr) {
       *field.opening(result_) = read_opening_table(file);
-      return;
-    }
-    if (field.stroke != nullptr) {
+    } else if (field.stroke != nullptr) {
       *field.stroke(result_) = read_stroke_table(file);
-      return;
-    }
-    if (field.drive != nullptr) {
+    } else if (field.drive != nullptr) {
       DriveSpec& drive = *field.drive(result_);
       drive.curve = read_drive_curve(file, drive.kind);
-      return;
-    }
-    if (field.share != nullptr) {
+    } else if (field.share != nullptr) {
       *field.share(result_) = read_share_curve(file);
-      return;
-    }
-    if (field.teeth != nullptr) {
+    } else if (field.teeth != nullptr) {
       read_tooth_errors(file, *field.teeth(result_));
-      return;
-    }
-    if (field.walls != nullptr) {
+    } else if (field.walls != nullptr) {
       field.walls(result_)->deviation =
           read_clearance_deviations(file, result_.pump.geometry.pistons);
-      return;
+    } else {
+      result_.pressure.curve = read_pressure_curve(file);
+      PressureTrace{result_.pressure};  // refuses a curve that cannot be a periodic spline
     }
-    result_.pressure.curve = read_pressure_curve(file);
-    PressureTrace{result_.pressure};  // refuses a curve that cannot be a periodic spline
   }
 
   const Registry& registry_;
@@ -265,19 +253,13 @@ class CaseReader {
   std::set<std::string> read_;  // TABLE.KEY of what has been asked for
 };
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(' ');
-  return first == std::string::npos ? ""
-                                    : text.substr(first, text.find_last_not_of(' ') + 1 - first);
-}
-
 // The change "TABLE.KEY=VALUE", of a key that the registry knows.
 void apply_change(TomlFile& file, const std::string& change, const Registry& registry) {
   const auto fail = [&](const std::string& why) {
     throw InputError("--set " + one_line(change) + ": " + why);
   };
   const auto equals = change.find('=');
-  const std::string name = trimmed(change.substr(0, equals));
+  const std::string name(trimmed(change.substr(0, equals), " "));
   if (equals == std::string::npos || name.empty() || one_line(change) != change)
     fail("must be TABLE.KEY=VALUE, in one line");
   const auto dot = name.rfind('.');
@@ -293,7 +275,7 @@ void apply_change(TomlFile& file, const std::string& change, const Registry& reg
   if (keys.count(key) == 0)
     fail("unknown key \"" + key + "\"" + (table.empty() ? "" : " in [" + table + "]") +
          key_suggestion(registry, table, key));
-  file.change(table, key, trimmed(change.substr(equals + 1)));
+  file.change(table, key, std::string(trimmed(change.substr(equals + 1), " ")));
 }
 
 Case case_of(TomlFile toml, const std::vector<std::string>& changes, const Registry& registry,

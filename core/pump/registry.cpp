@@ -1,14 +1,16 @@
 #include "bentaxis/pump/registry.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/full_key.h"
 #include "bentaxis/pump/inputs.h"
+#include "bentaxis/pump/lists.h"
+#include "bentaxis/pump/text.h"
 #include "bentaxis/pump/validate.h"
 #include "bentaxis/pump/words.h"
 
@@ -110,9 +112,8 @@ FieldNumbers numbers_of(const Field& field) {
 namespace {
 
 // A key in small letters and without its unit: "Swash_Angle_deg" -> "swash_angle".
-std::string without_unit(std::string key) {
-  for (char& letter : key)
-    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+std::string without_unit(const std::string& written) {
+  const std::string key = lower_case(written);
   for (const char* const unit : {"_deg", "_rad", "_mm", "_m", "_bar", "_pa", "_mpa", "_rpm", "_kg"})
     if (key.ends_with(unit)) return key.substr(0, key.size() - std::string(unit).size());
   return key;
@@ -121,7 +122,7 @@ std::string without_unit(std::string key) {
 bool is_also(const Parameter& parameter, const std::string& key) {
   const std::string word = without_unit(key);
   return parameter.symbol == key || without_unit(parameter.key) == word ||
-         std::find(parameter.also.begin(), parameter.also.end(), word) != parameter.also.end();
+         contains(parameter.also, word);
 }
 
 }  // namespace
@@ -135,7 +136,7 @@ std::optional<std::string> meant_key(const Registry& registry, const std::string
         for (const Parameter& parameter : one.parameters)
           if ((one.name == table) == here &&
               (exactly ? parameter.key == key : is_also(parameter, key)))
-            return (one.name.empty() ? "" : one.name + ".") + parameter.key;
+            return full_key(one, parameter);
   return std::nullopt;
 }
 
@@ -269,8 +270,7 @@ NumberRange range_of(const Parameter& parameter, const Case& the_case) {
 bool holds(const When& when, const Registry& registry, const Case& the_case) {
   if (when.words.empty()) return false;
   const auto value = value_of(parameter_of(registry, when.table, when.key), the_case);
-  return value && std::find(when.words.begin(), when.words.end(), std::get<std::string>(*value)) !=
-                      when.words.end();
+  return value && contains(when.words, std::get<std::string>(*value));
 }
 
 bool is_active(const Table& table, const Parameter& parameter, const Registry& registry,
@@ -333,7 +333,7 @@ std::vector<PumpInput> continuous_inputs(PumpParameters& pump, const Registry& r
       for (const Access<double>* place : numbers_of(parameter.field))
         list.push_back({*path++, place->in_pump(pump), si_range(parameter, the_case)});
     }
-  always.insert(always.end(), in_parts.begin(), in_parts.end());
+  append(always, in_parts);
   return always;
 }
 

@@ -11,6 +11,8 @@
 #include "bentaxis/designs/evaluator.h"
 #include "bentaxis/hydraulics/sensitivity.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/full_key.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/efficiency.h"
@@ -665,18 +667,12 @@ std::vector<Variable> continuous_variables(const Case& base) {
   for (const Table& table : standard_registry().tables) {
     // What an integration in time starts and is driven by changes no driven turn.
     if (table.name == "drive" || table.name.starts_with("assumptions")) continue;
-    for (const Parameter& p : table.parameters) {
-      std::vector<std::string> ends = {""};
-      if (std::holds_alternative<PairField>(p.field))
-        ends = {".1", ".2"};
-      else if (!std::holds_alternative<NumberField>(p.field))
-        continue;
-      for (const std::string& end : ends) try {
-          variables.emplace_back((table.name.empty() ? "" : table.name + ".") + p.key + end, base);
+    for (const Parameter& p : table.parameters)
+      for (const std::string& name : number_names(table, p)) try {
+          variables.emplace_back(name, base);
         } catch (const InputError&) {
           continue;  // it does nothing in this case
         }
-    }
   }
   return variables;
 }
@@ -713,19 +709,14 @@ Sensitivities sensitivities(const Case& base, const std::vector<Variable>& varia
       variables_found =
           find_exact(s, ready, outputs_found, std::move(variables_found), progress_of);
   }
-  const auto exact_output = [&](std::size_t o) {
-    return std::find(outputs_found.begin(), outputs_found.end(), o) != outputs_found.end();
-  };
-  const auto exact_variable = [&](std::size_t v) {
-    return std::find(variables_found.begin(), variables_found.end(), v) != variables_found.end();
-  };
 
   // Of the outputs that differences are needed of alone, so that these can be quick.
   std::vector<std::vector<std::size_t>> wanted;
   std::vector<std::size_t> by_differences;
   for (std::size_t v = 0; v < variables.size(); ++v) {
     wanted.push_back(numbers(outputs.size(), [&](std::size_t o) {
-      return is_computed(s.values[o]) && !(exact_output(o) && exact_variable(v));
+      return is_computed(s.values[o]) &&
+             !(contains(outputs_found, o) && contains(variables_found, v));
     }));
     if (!wanted.back().empty()) by_differences.push_back(v);
   }

@@ -18,8 +18,10 @@
 #include "bentaxis/files/whole_file.h"
 #include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/full_key.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/registry.h"
+#include "bentaxis/pump/text.h"
 #include "bentaxis/study/reporting.h"
 
 namespace bentaxis::designs {
@@ -216,12 +218,9 @@ SweepRecord record_of(const Sweep& sweep, const std::string& program) {
       if (path.empty()) continue;
       const auto content = content_of(path);
       if (!content) throw InputError(path + ": cannot be read");
-      const std::string name = (table.name.empty() ? "" : table.name + ".") + p.key + ".csv";
+      const std::string name = full_key(table, p) + ".csv";
       record.curves.emplace_back(name, *content);
-      const std::string old = toml_text(path);
-      for (std::size_t at = record.case_text.find(old); at != std::string::npos;
-           at = record.case_text.find(old, at + 1))
-        record.case_text.replace(at, old.size(), toml_text(name));
+      record.case_text = replace_all(std::move(record.case_text), toml_text(path), toml_text(name));
     }
   // What is better changes no block.
   SweepPlan blocks = sweep.plan();

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/full_key.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/validate.h"
 #include "bentaxis/pump/words.h"
@@ -19,7 +20,7 @@ const Parameter* find(const std::string& name, const Table*& table) {
   const Registry& registry = standard_registry();
   for (const Table& t : registry.tables)
     for (const Parameter& p : t.parameters)
-      if ((t.name.empty() ? p.key : t.name + "." + p.key) == name) {
+      if (full_key(t, p) == name) {
         table = &t;
         return &p;
       }
@@ -32,11 +33,9 @@ std::set<std::string> known() {
     for (const Parameter& p : t.parameters)
       if (!std::holds_alternative<TextField>(p.field) &&
           !std::holds_alternative<CurveField>(p.field)) {
-        const std::string name = t.name.empty() ? p.key : t.name + "." + p.key;
-        if (std::holds_alternative<PairField>(p.field))
-          names.insert({name + ".1", name + ".2"});
-        else
-          names.insert(name);
+        const std::vector<std::string> numbers = number_names(t, p);
+        names.insert(numbers.begin(), numbers.end());
+        if (numbers.empty()) names.insert(full_key(t, p));
       }
   return names;
 }
