@@ -2,9 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bentaxis/analytic/mechanics.h"
-#include "bentaxis/coupled/prescribed_oil.h"
-#include "bentaxis/multibody/mechanics.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/max_abs.h"
 #include "rattle_pieces.h"
@@ -24,24 +21,11 @@ constexpr int kMaxCheckedTurns = 3;  // an irregular motion is judged for less t
 constexpr double kTooMuchToJudge = 0.05;
 
 // A model under way.
-struct Runner {
-  std::unique_ptr<Oil> oil;
-  std::unique_ptr<Mechanics> mechanics;
-  coupled::ToothWatch watch;
+struct Runner : WatchedModel {
   coupled::ToothStretch judged, whole;
 
   Runner(const PreparedCase& ready, Model model, const RattlePoint& from, double disturbance)
-      : oil(coupled::prescribed_oil(ready.the_case.pump.geometry.pistons, ready.pressure,
-                                    ready.the_case.pressure.ports)),
-        mechanics(model == Model::analytic
-                      ? analytic::mechanics(ready.the_case, ready.assumptions(model))
-                      : multibody::mechanics(ready.the_case, ready.assumptions(model))),
-        watch(to_string(model), *mechanics, *oil, kCheckTolerance, kImpactSpeed) {
-    MotionVector motion = mechanics->start();
-    motion[kLag] = from.lag + disturbance * mechanics->scales()[kLag];
-    motion[kLagRate] = from.lag_rate;
-    watch.start(motion);
-  }
+      : WatchedModel(ready, model, kCheckTolerance, from.lag, from.lag_rate, disturbance) {}
 };
 
 // Of two motions, of what their states are measured by.

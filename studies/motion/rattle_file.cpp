@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include "bentaxis/files/csv_rows.h"
@@ -18,45 +19,31 @@ namespace {
 
 constexpr const char* kTitle = "# rows of a rattle map that is not complete (docs/rattle.md)";
 
-// A point as numbers, and back.
+// What a file keeps of a point.
+template <class Point, class Use>
+void for_each_number(Point& p, const Use& use) {
+  use(p.kind);
+  for (auto* n : {&p.apart, &p.plus, &p.minus, &p.largest, &p.mean, &p.least_turn, &p.impacts,
+                  &p.largest_impulse})
+    use(*n);
+  for (auto* n : {&p.observed, &p.passed, &p.period}) use(*n);
+  for (auto* n : {&p.lag, &p.lag_rate}) use(*n);
+}
+
 std::vector<double> numbers_of(const RattlePoint& p) {
-  return {static_cast<double>(p.kind),
-          p.apart,
-          p.plus,
-          p.minus,
-          p.largest,
-          p.mean,
-          p.least_turn,
-          p.impacts,
-          p.largest_impulse,
-          static_cast<double>(p.observed),
-          static_cast<double>(p.passed),
-          static_cast<double>(p.period),
-          p.lag,
-          p.lag_rate};
+  std::vector<double> numbers;
+  for_each_number(p, [&](auto n) { numbers.push_back(static_cast<double>(n)); });
+  return numbers;
 }
 constexpr std::size_t kNumbers = 14;
 
-RattlePoint point_of(const double* n) {
+RattlePoint point_of(const double* numbers) {
   RattlePoint p;
-  p.kind = static_cast<RattleClass>(static_cast<int>(n[0]));
-  p.apart = n[1];
-  p.plus = n[2];
-  p.minus = n[3];
-  p.largest = n[4];
-  p.mean = n[5];
-  p.least_turn = n[6];
-  p.impacts = n[7];
-  p.largest_impulse = n[8];
-  p.observed = static_cast<int>(n[9]);
-  p.passed = static_cast<int>(n[10]);
-  p.period = static_cast<int>(n[11]);
-  p.lag = n[12];
-  p.lag_rate = n[13];
+  for_each_number(p, [&](auto& n) { n = static_cast<std::decay_t<decltype(n)>>(*numbers++); });
   return p;
 }
 
-void append(std::string& text, const std::vector<double>& values) {
+void append_numbers(std::string& text, const std::vector<double>& values) {
   for (const double value : values) {
     text += ',';
     append_number(text, value);
@@ -66,13 +53,13 @@ void append(std::string& text, const std::vector<double>& values) {
 // A line for the row, one for the criterion, one per sweep.
 std::string numbers_text(const RattleRow& row) {
   std::string text = "row," + number_text(row.delivery_bar);
-  append(text, row.boundary_rpm);
+  append_numbers(text, row.boundary_rpm);
   text += "\nrigid";
-  append(text, row.least);
-  append(text, row.greatest);
+  append_numbers(text, row.least);
+  append_numbers(text, row.greatest);
   for (const auto& [name, points] : {std::pair{"up", &row.up}, {"down", &row.down}}) {
     text += std::string("\n") + name;
-    for (const RattlePoint& point : *points) append(text, numbers_of(point));
+    for (const RattlePoint& point : *points) append_numbers(text, numbers_of(point));
   }
   return text + "\n";
 }

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "bentaxis/compare/difference.h"
 #include "bentaxis/coupled/tooth_watch.h"
+#include "bentaxis/results/mechanics.h"
+#include "bentaxis/results/oil.h"
 #include "bentaxis/study/rattle.h"
 #include "bentaxis/study/run.h"
 
@@ -20,6 +23,17 @@ double step_tolerance(double error);
 /// The smallest and the largest force of rigid teeth over the turn, N, positive where the shaft
 /// pushes the block on.
 std::pair<double, double> rigid_extremes(const PreparedCase& ready);
+
+/// A model whose teeth are watched from theta = 0 on.
+struct WatchedModel {
+  std::unique_ptr<Oil> oil;
+  std::unique_ptr<Mechanics> mechanics;
+  coupled::ToothWatch watch;
+
+  /// @param disturbance  of the lag, of its scale
+  WatchedModel(const PreparedCase& ready, Model model, double tolerance, double lag,
+               double lag_rate, double disturbance = 0);
+};
 
 /// Moves the teeth at a point until it is settled and observes them.
 /// @param lag, lag_rate  where they begin, at theta = 0; then where they end

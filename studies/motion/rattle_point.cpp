@@ -1,10 +1,10 @@
 // One point of the rattle map: the motion of the teeth at a speed and a pressure.
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "bentaxis/analytic/mechanics.h"
 #include "bentaxis/coupled/prescribed_oil.h"
+#include "bentaxis/multibody/mechanics.h"
 #include "bentaxis/pump/units.h"
 #include "rattle_pieces.h"
 
@@ -125,6 +125,20 @@ double step_tolerance(double error) {
   return std::clamp(kErrorOfStep * error, kTightestStep, kLoosestStep);
 }
 
+WatchedModel::WatchedModel(const PreparedCase& ready, Model model, double tolerance, double lag,
+                           double lag_rate, double disturbance)
+    : oil(coupled::prescribed_oil(ready.the_case.pump.geometry.pistons, ready.pressure,
+                                  ready.the_case.pressure.ports)),
+      mechanics(model == Model::analytic
+                    ? analytic::mechanics(ready.the_case, ready.assumptions(model))
+                    : multibody::mechanics(ready.the_case, ready.assumptions(model))),
+      watch(to_string(model), *mechanics, *oil, tolerance, kImpactSpeed) {
+  MotionVector motion = mechanics->start();
+  motion[kLag] = lag + disturbance * mechanics->scales()[kLag];
+  motion[kLagRate] = lag_rate;
+  watch.start(motion);
+}
+
 RattlePoint settle(const PreparedCase& ready, const RattleOptions& options, double& lag,
                    double& lag_rate, const std::function<void()>& turn) {
   const Case& c = ready.the_case;
@@ -132,16 +146,9 @@ RattlePoint settle(const PreparedCase& ready, const RattleOptions& options, doub
     turn();
     return rigid_point(ready);
   }
-  const auto oil =
-      coupled::prescribed_oil(c.pump.geometry.pistons, ready.pressure, c.pressure.ports);
-  const auto mechanics = analytic::mechanics(c, ready.assumptions(Model::analytic));
-  coupled::ToothWatch watch("analytic", *mechanics, *oil, step_tolerance(options.error),
-                            kImpactSpeed);
-  MotionVector motion = mechanics->start();
-  motion[kLag] = lag;
-  motion[kLagRate] = lag_rate;
-  watch.start(motion);
-  Settling settling(mechanics->scales(), options.discard + options.turns);
+  WatchedModel model(ready, Model::analytic, step_tolerance(options.error), lag, lag_rate);
+  coupled::ToothWatch& watch = model.watch;
+  Settling settling(model.mechanics->scales(), options.discard + options.turns);
   const double period = 60 / c.operation.speed_rpm;
   for (int n = 1;; ++n) {
     const Turn began{watch.motion()[kLag], watch.motion()[kLagRate], {}};
