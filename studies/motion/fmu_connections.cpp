@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <string_view>
 
 #include "bentaxis/hydraulics/oil_in_time.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/unit_of_measure.h"
 #include "bentaxis/pump/words.h"
 #include "bentaxis/results/channels.h"
@@ -24,10 +26,14 @@ std::string unit_in_descriptions(const std::string& unit) {
 
 std::string first_of(const std::vector<std::string>& names) {
   constexpr std::size_t kMax = 12;
-  std::string text;
-  for (std::size_t i = 0; i < names.size() && i < kMax; ++i)
-    text += (i == 0 ? "" : ", ") + names[i];
-  return text + (names.size() > kMax ? ", .." : "");
+  if (names.size() <= kMax) return joined(names);
+  return joined(std::span(names).first(kMax)) + ", ..";
+}
+
+std::string inputs_of_pump() {
+  std::vector<std::string> names;
+  for (const PumpInput& input : pump_inputs()) names.emplace_back(input.name);
+  return first_of(names);
 }
 
 // Before the input of a wanted connection: whose it is.
@@ -63,9 +69,7 @@ class Connector {
       if (v.causality == causality) all.push_back(v.name);
     return all;
   }
-  bool has_column(std::string_view name) const {
-    return std::find(pump_.columns.begin(), pump_.columns.end(), name) != pump_.columns.end();
-  }
+  bool has_column(std::string_view name) const { return contains(pump_.columns, name); }
   bool is_made(bool to_pump, std::string_view receiver) const {
     return std::any_of(made_.begin(), made_.end(), [&](const Connection& c) {
       return c.to_pump == to_pump && (to_pump ? c.pump : c.unit.name) == receiver;
@@ -131,12 +135,10 @@ class Connector {
     if (of_unit != nullptr)
       throw InputError(fmt::format("{}: the pump has no column \"{}\"{}", option, from,
                                    meant_of(pump_.columns, "in its tables")));
-    std::vector<std::string> inputs;
-    for (const PumpInput& input : pump_inputs()) inputs.emplace_back(input.name);
     throw InputError(
         fmt::format("{}: neither the pump nor the FMU has an input \"{}\": those of the pump are "
                     "{}; those of the FMU: {}",
-                    option, to, first_of(inputs), first_of(names("input"))));
+                    option, to, inputs_of_pump(), first_of(names("input"))));
   }
 
   // Equal names; what was asked for stands.
@@ -176,11 +178,9 @@ class Connector {
       if (variable(input.name, "output") != nullptr)
         throw InputError(fmt::format("{}: no output acts on the pump: {}: {}", place_, input.name,
                                      why_not_taken(input.name)));
-    std::vector<std::string> inputs;
-    for (const PumpInput& input : pump_inputs()) inputs.emplace_back(input.name);
     throw InputError(fmt::format(
         "{}: no output acts on the pump: connect an output ({}) by --connect to one of {}", place_,
-        first_of(names("output")), first_of(inputs)));
+        first_of(names("output")), inputs_of_pump()));
   }
 
   void add(const PumpInput& input, const fmu::UnitVariable& output, const std::string& what,

@@ -7,7 +7,9 @@
 #include <set>
 #include <unordered_set>
 
+#include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/time_signal.h"
 #include "bentaxis/pump/units.h"
@@ -79,7 +81,7 @@ class UnitCoupling::Partner {
     }
     if (record_) {
       record_->values.push_back(pump.time);
-      record_->values.insert(record_->values.end(), values.begin(), values.end());
+      append(record_->values, values);
     }
     slave_->step(step_ * static_cast<double>(points_), step_);
     ++points_;
@@ -236,9 +238,7 @@ void UnitCoupling::find_drive() {
   const bool torque = drives("drive_torque"), speed = drives("drive_speed");
   if (!torque && !speed) return;
   const double usual = rad_per_second(driven_.operation.speed_rpm);
-  const bool by_curve = drive.kind == DriveKind::speed && !drive.curve.time.empty();
-  const double start =
-      by_curve ? TimeSignal(drive.curve).value(0) : drive.start_speed.value_or(usual);
+  const double start = start_speed(drive, usual);
   drive.kind = torque ? DriveKind::torque : DriveKind::speed;
   drive.motor.reset();
   drive.curve = {};
@@ -262,24 +262,27 @@ void UnitCoupling::find_drive() {
   instances_->said->add(slave->log());
 }
 
-std::vector<std::string> UnitCoupling::loose_inputs() const {
+namespace {
+
+std::vector<std::string> loose(const fmu::UnitDescription& unit,
+                               const std::vector<Connection>& connections, bool to_pump) {
   std::vector<std::string> names;
-  for (const auto& v : unit_->description().variables)
-    if (v.causality == "input" &&
-        std::none_of(connections_.begin(), connections_.end(),
-                     [&](const Connection& c) { return !c.to_pump && c.unit.name == v.name; }))
+  for (const auto& v : unit.variables)
+    if (v.causality == (to_pump ? "output" : "input") &&
+        std::none_of(connections.begin(), connections.end(), [&](const Connection& c) {
+          return c.to_pump == to_pump && c.unit.name == v.name;
+        }))
       names.push_back(v.name);
   return names;
 }
 
+}  // namespace
+
+std::vector<std::string> UnitCoupling::loose_inputs() const {
+  return loose(unit_->description(), connections_, false);
+}
 std::vector<std::string> UnitCoupling::loose_outputs() const {
-  std::vector<std::string> names;
-  for (const auto& v : unit_->description().variables)
-    if (v.causality == "output" &&
-        std::none_of(connections_.begin(), connections_.end(),
-                     [&](const Connection& c) { return c.to_pump && c.unit.name == v.name; }))
-      names.push_back(v.name);
-  return names;
+  return loose(unit_->description(), connections_, true);
 }
 
 coupled::Exchange UnitCoupling::exchange(int parts, std::shared_ptr<UnitRecord> record) const {
@@ -300,18 +303,7 @@ void UnitCoupling::end_instances() const {
 }
 
 std::string UnitRecord::csv() const {
-  std::string text;
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    if (c > 0) text += ',';
-    if (columns[c].find_first_of(",\"") == std::string::npos) {
-      text += columns[c];
-      continue;
-    }
-    text += '"';
-    for (const char letter : columns[c]) text += letter == '"' ? "\"\"" : std::string(1, letter);
-    text += '"';
-  }
-  text += '\n';
+  std::string text = joined(columns, ",", csv_text) + "\n";
   for (std::size_t i = 0; i < values.size(); ++i) {
     append_number(text, values[i]);
     text += (i + 1) % columns.size() == 0 ? '\n' : ',';
