@@ -122,26 +122,24 @@ std::string law_refusal(const Case& c) {
                "\"ignored\"";
 }
 
-std::string lowest_pressure_refusal(const Case& c) {
-  const HydraulicData& data = *c.hydraulics;
-  if (c.pressure.kind != PressureKind::hydraulic || data.oil_law != OilLaw::constant_density)
-    return "";
-  const double least = data.atmosphere + std::min(c.pressure.ports.suction, data.case_pressure);
-  return data.lowest_pressure < least
+// Of a pressure that must be below those of suction port and case.
+std::string not_below_both(const Case& c, double absolute, bool used) {
+  const double least =
+      c.hydraulics->atmosphere + std::min(c.pressure.ports.suction, c.hydraulics->case_pressure);
+  return c.pressure.kind != PressureKind::hydraulic || !used || absolute < least
              ? ""
              : "must be < " + short_text(least / kPascalPerBar) +
                    ", the smaller absolute pressure of suction port and case";
 }
 
+std::string lowest_pressure_refusal(const Case& c) {
+  const HydraulicData& data = *c.hydraulics;
+  return not_below_both(c, data.lowest_pressure, data.oil_law == OilLaw::constant_density);
+}
+
 std::string boiling_refusal(const Case& c) {
   const HydraulicData& data = *c.hydraulics;
-  if (c.pressure.kind != PressureKind::hydraulic || data.cavitation == Cavitation::ignored)
-    return "";
-  const double least = data.atmosphere + std::min(c.pressure.ports.suction, data.case_pressure);
-  return data.vapour_pressure < least
-             ? ""
-             : "must be < " + short_text(least / kPascalPerBar) +
-                   ", the smaller absolute pressure of suction port and case";
+  return not_below_both(c, data.vapour_pressure, data.cavitation != Cavitation::ignored);
 }
 
 std::string vacuum_refusal(const Case& c) {
