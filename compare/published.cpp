@@ -12,6 +12,7 @@
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/text.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::compare {
@@ -99,19 +100,16 @@ PublishedNumber read_number(TableReader in, const Published& published) {
 
 std::string number_of(double value) { return fmt::format("{:.6g}", value); }
 
-std::string with_unit(const std::string& text, const std::string& unit) {
-  return unit.empty() ? text : text + " " + unit;
-}
-
 std::string printed(const PublishedNumber& n) {
   if (n.value) {
     std::string text = number_of(*n.value);
     if (n.tolerance > 0) text += " ± " + number_of(n.tolerance);
-    return with_unit(text, n.unit);
+    return text + unit_after(n.unit);
   }
-  if (n.high == kInfinity) return "above " + with_unit(number_of(n.low), n.unit);
-  if (n.low == -kInfinity) return "below " + with_unit(number_of(n.high), n.unit);
-  return "window " + with_unit(number_of(n.low) + " to " + number_of(n.high), n.unit);
+  const std::string unit = unit_after(n.unit);
+  if (n.high == kInfinity) return "above " + number_of(n.low) + unit;
+  if (n.low == -kInfinity) return "below " + number_of(n.high) + unit;
+  return "window " + number_of(n.low) + " to " + number_of(n.high) + unit;
 }
 
 // The facts that a range does not hold for, in words; "" where all hold.

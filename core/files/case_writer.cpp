@@ -1,6 +1,7 @@
 #include "bentaxis/files/case_writer.h"
 
 #include "bentaxis/files/toml_reader.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/registry.h"
 
@@ -34,10 +35,11 @@ std::string uncertainty_text(const UncertaintyData& data) {
   std::string text = "\n[uncertainty]\n";
   for (const auto& [name, distribution] : data.parameters)
     text += toml_text(name) + " = " + toml_text(distribution) + "\n";
-  std::string pairs;
-  for (const auto& [first, second, coefficient] : data.correlations)
-    pairs += std::string(pairs.empty() ? "" : ", ") + "[" + toml_text(first) + ", " +
-             toml_text(second) + ", " + toml_number(coefficient) + "]";
+  const std::string pairs = joined(data.correlations, ", ", [](const auto& pair) {
+    const auto& [first, second, coefficient] = pair;
+    return "[" + toml_text(first) + ", " + toml_text(second) + ", " + toml_number(coefficient) +
+           "]";
+  });
   return pairs.empty() ? text : text + "correlation = [" + pairs + "]\n";
 }
 

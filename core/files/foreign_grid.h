@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bentaxis/files/foreign_table.h"
+#include "bentaxis/pump/text.h"
 
 namespace bentaxis::foreign {
 
@@ -46,7 +47,8 @@ void fill(const Grid& grid, ForeignTable& table);
 /// Whether the whole of a text is a finite number; its value and number of significant digits.
 bool parse_number(std::string_view text, char decimal, double& value, int& digits);
 
-std::string_view trimmed(std::string_view text);
+/// Without the blanks at both ends of a cell; the ends of its lines stay.
+inline std::string_view trimmed(std::string_view text) { return bentaxis::trimmed(text, " \t\r"); }
 
 /// Makes names differ from those before them: "F", "F (2)", "F (3)".
 class DifferentNames {

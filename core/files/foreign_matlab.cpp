@@ -163,7 +163,7 @@ ForeignTable read_matlab(const std::filesystem::path& file, const std::string& c
   while (matvar_t* next = matio().read_next(in.get())) {
     const std::unique_ptr<matvar_t, void (*)(matvar_t*)> variable(next, matio().free);
     const std::string name = next->name == nullptr ? "" : next->name;
-    if (name.empty() || name.front() == '#' || name.rfind("__", 0) == 0) continue;
+    if (name.empty() || name.front() == '#' || name.starts_with("__")) continue;
     names += (names.empty() ? "" : ", ") + name;
     if (!wanted.empty() && name != wanted) continue;
     if (next->class_type == MAT_C_OPAQUE && wanted == name)

@@ -13,6 +13,7 @@
 #include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/text.h"
 #include "bentaxis/pump/unit_of_measure.h"
 #include "foreign_grid.h"
 
@@ -268,12 +269,6 @@ bool same_first_column(const Grid& grid, const Run& a, const Run& b) {
 
 }  // namespace
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 bool parse_number(std::string_view text, char decimal, double& value, int& digits) {
   if (text.empty() || text.size() > 63) return false;
   if (text.front() == '+') text.remove_prefix(1);
@@ -394,9 +389,7 @@ std::string known_unit(const std::string& text) {
     return unit != nullptr && quantities.count(unit->quantity) > 0 ? unit->name : "";
   };
   if (std::string name = name_of(find_written_unit(bare)); !name.empty()) return name;
-  std::transform(bare.begin(), bare.end(), bare.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return name_of(find_unit_by_word(bare));
+  return name_of(find_unit_by_word(lower_case(bare)));
 }
 
 std::string unit_in_name(const std::string& name) {
@@ -428,20 +421,15 @@ namespace {
 
 ForeignTable unchecked_table_of(std::string content, const std::filesystem::path& file,
                                 const std::string& sheet) {
-  const auto starts = [&](std::string_view what) {
-    return std::string_view(content).substr(0, what.size()) == what;
-  };
-  if (starts("PK\x03\x04")) return foreign::read_workbook(file, content, sheet);
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (starts("MATLAB ") || starts("\x89HDF") ||
+  if (content.starts_with("PK\x03\x04")) return foreign::read_workbook(file, content, sheet);
+  const std::string extension = lower_case(file.extension().string());
+  if (content.starts_with("MATLAB ") || content.starts_with("\x89HDF") ||
       (extension == ".mat" && content.find('\0') != std::string::npos))
     return foreign::read_matlab(file, content, sheet);
-  if (starts("\xD0\xCF\x11\xE0"))
+  if (content.starts_with("\xD0\xCF\x11\xE0"))
     throw InputError(file.string() +
                      ": is an .xls file from before 2007: save it as .xlsx or as CSV");
-  if (starts("# Created by Octave"))
+  if (content.starts_with("# Created by Octave"))
     throw InputError(file.string() + ": is Octave's own text format: save it with -v7");
   if (!sheet.empty())
     throw InputError(file.string() + ": is text and has no sheet \"" + sheet + "\"");

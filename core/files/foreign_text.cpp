@@ -240,14 +240,11 @@ bool requests(const std::vector<Line>& lines, bool ended, Grid& grid) {
 ForeignTable read_text(const std::filesystem::path& file, std::string content) {
   ForeignTable table;
   table.file = file;
-  const auto starts = [&](std::string_view what) {
-    return std::string_view(content).substr(0, what.size()) == what;
-  };
-  if (starts("\xFF\xFE") || starts("\xFE\xFF"))
-    content = as_utf8(content, starts("\xFE\xFF"));
+  if (content.starts_with("\xFF\xFE") || content.starts_with("\xFE\xFF"))
+    content = as_utf8(content, content.starts_with("\xFE\xFF"));
   else if (!is_utf8(content))
     content = utf8_of_windows_1252(content);
-  if (starts("\xEF\xBB\xBF")) content.erase(0, 3);
+  if (content.starts_with("\xEF\xBB\xBF")) content.erase(0, 3);
   if (content.find('\0') != std::string::npos)
     throw InputError(file.string() +
                      ": is neither text nor a format that can be read (.xlsx, .mat)");

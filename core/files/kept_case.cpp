@@ -7,6 +7,7 @@
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/registry.h"
+#include "bentaxis/pump/text.h"
 
 namespace bentaxis {
 namespace {
@@ -56,12 +57,8 @@ KeptCase kept_case(const Case& the_case) {
       kept.curves.push_back({name_for(*file, kept.curves), curve_of(the_case, *file)});
       *file = kRoot + kept.curves.back().name;
     }
-  kept.text = case_text(copy);
   // The writer names curves by their whole paths.
-  const std::string whole = std::string("\"") + kRoot;
-  for (std::size_t at = kept.text.find(whole); at != std::string::npos;
-       at = kept.text.find(whole, at))
-    kept.text.replace(at, whole.size(), "\"");
+  kept.text = replace_all(case_text(copy), std::string("\"") + kRoot, "\"");
   return kept;
 }
 

@@ -4,6 +4,7 @@
 
 #include "bentaxis/files/module_folders.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 
 namespace bentaxis {
 
@@ -23,9 +24,9 @@ void* Module::needed(const char* name, const std::string& what) const {
 }
 
 std::string Module::what_is_wrong() const {
-  std::string folders;
-  for (const std::filesystem::path& folder : module_folders())
-    folders += (folders.empty() ? "" : ", ") + folder.lexically_normal().string();
+  const std::string folders = joined(module_folders(), ", ", [](const auto& folder) {
+    return folder.lexically_normal().string();
+  });
   return "the module " + file_ +
          (loaded()       ? " is of another version"
           : why_.empty() ? " is in none of the folders " + folders

@@ -1,6 +1,5 @@
 #include "bentaxis/files/schema.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -9,6 +8,7 @@
 
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/registry.h"
 #include "bentaxis/pump/words.h"
 
@@ -128,7 +128,7 @@ std::string range_cell(const Parameter& p) {
       range.high = std::numeric_limits<double>::infinity();
     const bool any = !std::isfinite(range.low) && !std::isfinite(range.high);
     std::string text = any ? "" : range.text();
-    if (text.rfind("in ", 0) == 0) text = text.substr(3);
+    if (text.starts_with("in ")) text = text.substr(3);
     return is_integer(p) ? "integer " + text : text;
   }
   return "";
@@ -200,8 +200,7 @@ std::string case_schema(const Registry& registry) {
       // Also where the key is left out, if its default is one of the words.
       const auto& fallback = parameter_of(registry, when.table, when.key).fallback.value;
       const auto* const word = fallback ? std::get_if<std::string>(&*fallback) : nullptr;
-      if (word != nullptr &&
-          std::find(when.words.begin(), when.words.end(), *word) != when.words.end()) {
+      if (word != nullptr && contains(when.words, *word)) {
         met.erase("required");
         met["properties"][when.table].erase("required");
       }

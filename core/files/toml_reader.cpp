@@ -12,6 +12,7 @@
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/words.h"
 
@@ -315,8 +316,7 @@ bool TableReader::flag(const std::string& key, bool fallback) {
 
 std::size_t TableReader::choice(const std::string& key, const std::vector<std::string>& words,
                                 std::optional<std::size_t> fallback) {
-  std::string wanted;
-  for (const auto& word : words) wanted += (wanted.empty() ? "\"" : " or \"") + word + "\"";
+  const std::string wanted = "\"" + joined(words, "\" or \"") + "\"";
   const auto node = find(key, wanted, fallback.has_value());
   if (!node) {
     record(key, words[*fallback], true);
@@ -489,10 +489,8 @@ const std::string* TableReader::change_of(const std::string& key) const {
 // A value as whoever wrote it wrote it: toml++ prints 24.92 with its 17 digits.
 std::string TableReader::written(const Node& node, const std::string& key) const {
   if (const toml::array* array = node.node->as_array(); array != nullptr) {
-    std::string list;
-    for (const toml::node& item : *array)
-      list += (list.empty() ? "" : ", ") + written({node.file, &item}, key);
-    return "[" + list + "]";
+    const auto text_of = [&](const toml::node& item) { return written({node.file, &item}, key); };
+    return "[" + joined(*array, ", ", text_of) + "]";
   }
   if (!node.node->is_number()) return quoted(*node.node);
   const double value = *node.node->value<double>();

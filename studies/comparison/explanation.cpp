@@ -5,17 +5,17 @@
 
 #include <cmath>
 
+#include "bentaxis/pump/lists.h"
+#include "bentaxis/pump/text.h"
+
 namespace bentaxis::study {
 namespace {
 
 std::string change_text(const ExplainingChange& change) {
-  std::string text;
-  for (const auto& p : change.parameters) {
-    text += fmt::format("{}{} {:.6g} -> {:.6g}{}{}", text.empty() ? "" : " and ", p.name, p.from,
-                        p.to, p.unit.empty() ? "" : " ", p.unit);
-    if (p.from != 0) text += fmt::format(" ({:+.3g} %)", 100 * (p.to / p.from - 1));
-  }
-  return text;
+  return joined(change.parameters, " and ", [](const auto& p) {
+    return fmt::format("{} {:.6g} -> {:.6g}{}", p.name, p.from, p.to, unit_after(p.unit)) +
+           (p.from != 0 ? fmt::format(" ({:+.3g} %)", 100 * (p.to / p.from - 1)) : "");
+  });
 }
 
 // Rounded down, so that 99.98 % is no 100 %.
@@ -55,8 +55,7 @@ std::string Explanation::text() const {
     text += fmt::format(", {:.3g} times what is allowed: other causes remain",
                         found->rest_over_allowed);
   std::vector<std::string> same, others;
-  for (const auto& p : found->parameters)
-    same.insert(same.end(), p.look_same.begin(), p.look_same.end());
+  for (const auto& p : found->parameters) append(same, p.look_same);
   for (const ExplainingChange& other : singles) {
     if (&other == found || other.share <= kMentioned) continue;
     const std::string& name = other.parameters.front().name;

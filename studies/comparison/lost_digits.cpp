@@ -11,6 +11,7 @@
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/study/achieved_error.h"
 #include "bentaxis/study/rounding_spread.h"
 
@@ -109,15 +110,14 @@ std::vector<std::string> multibody_warnings(const Case& the_case,
   std::map<std::string, double> lost = losses.groups;
   for (const RoundingLine& line : lines)
     if (lost[line.group] < kMoreThanEstimated * line.total()) lost.erase(line.group);
-  std::string groups;
+  std::vector<std::string> groups;
   for (const auto& [group, loss] : lost)
-    if (is_worth_a_warning(loss))
-      groups += fmt::format("{}{} {}", groups.empty() ? "" : ", ", group, loss_text(loss));
+    if (is_worth_a_warning(loss)) groups.push_back(group + " " + loss_text(loss));
   if (groups.empty()) return {};
   return {fmt::format(
       "the reactions of the multibody model are accurate to these shares of their peaks only: {} "
       "(changes when every input changes by one unit in the last place); {}",
-      groups,
+      joined(groups),
       multibody::method_for(the_case.pump, scene.method) == multibody::Method::multipliers
           ? "Simbody's constraint multipliers may be the cause: try --reactions residual"
           : "the analytic model is more accurate here")};

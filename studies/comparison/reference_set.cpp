@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <variant>
 
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/registry.h"
 #include "bentaxis/study/achieved_error.h"
 
@@ -38,7 +38,7 @@ std::vector<fs::path> files_of(const Case& the_case) {
       if (file->empty()) continue;
       if (file == &the_case.pressure.file && the_case.pressure.kind != PressureKind::curve)
         continue;
-      if (std::find(files.begin(), files.end(), *file) == files.end()) files.push_back(*file);
+      add_once(files, *file);
     }
   return files;
 }

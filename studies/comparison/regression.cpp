@@ -7,6 +7,7 @@
 #include "bentaxis/compare/published.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/results/stopwatch.h"
 
 namespace bentaxis::study {
@@ -70,9 +71,7 @@ void hold_to_curves(const compare::ReferenceDescription& description, const Case
   for (const Model which : kModels) {
     const std::string model = to_string(which);
     const Stopwatch stopwatch;
-    const auto holds = [&](const auto& curve) {
-      return std::find(curve.models.begin(), curve.models.end(), model) != curve.models.end();
-    };
+    const auto holds = [&](const auto& curve) { return contains(curve.models, model); };
     if (std::none_of(description.curves.begin(), description.curves.end(), holds)) continue;
     const Case& the_case = case_of(which);
     const ChannelLayout layout(the_case.pump);
@@ -271,12 +270,8 @@ std::string held_text(const Outcome& outcome) {
   const GroupLine* worst = nullptr;
   for (const GroupLine& line : outcome.lines) {
     if (line.is_missing()) continue;
-    const auto note = [&](std::vector<std::string>& names) {
-      if (std::find(names.begin(), names.end(), line.group) == names.end())
-        names.push_back(line.group);
-    };
-    note(groups);
-    if (line.failed > 0) note(differing);
+    add_once(groups, line.group);
+    if (line.failed > 0) add_once(differing, line.group);
     if (worst == nullptr || severity(*line.worst()) > severity(*worst->worst())) worst = &line;
   }
   const std::string count =
@@ -301,16 +296,13 @@ std::vector<const GroupLine*> sorted_lines(const std::vector<Outcome>& outcomes)
 std::vector<std::string> missing_lines(const std::vector<Outcome>& outcomes) {
   std::vector<std::string> lines;
   for (const auto& outcome : outcomes) {
-    std::map<std::string, std::string> groups;  // groups to models
+    std::map<std::string, std::vector<std::string>> models_of, by_models;  // by group
     for (const auto& line : outcome.lines)
-      if (line.is_missing())
-        groups[line.group] += (groups[line.group].empty() ? "" : ", ") + line.model;
-    std::map<std::string, std::string> by_models;
-    for (const auto& [group, models] : groups)
-      by_models[models] += (by_models[models].empty() ? "" : ", ") + group;
-    for (const auto& [models, names] : by_models)
+      if (line.is_missing()) models_of[line.group].push_back(line.model);
+    for (const auto& [group, models] : models_of) by_models[joined(models)].push_back(group);
+    for (const auto& [models, groups] : by_models)
       lines.push_back(
-          fmt::format("missing     {}: no curve of {} ({})", outcome.name, names, models));
+          fmt::format("missing     {}: no curve of {} ({})", outcome.name, joined(groups), models));
   }
   return lines;
 }

@@ -11,7 +11,9 @@
 #include <set>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/text.h"
 #include "bentaxis/pump/words.h"
 #include "plain_double.h"
 
@@ -84,12 +86,6 @@ double covariance(const Distribution& a, const Distribution& b, double r) {
   return sum * kStep * kStep / (2 * law::constants::pi<double>());
 }
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(' ');
-  return first == std::string::npos ? ""
-                                    : text.substr(first, text.find_last_not_of(' ') + 1 - first);
-}
-
 }  // namespace
 
 double Distribution::quantile(double share) const {
@@ -125,9 +121,8 @@ double Distribution::standard_deviation() const {
 }
 
 std::string Distribution::text() const {
-  std::string list;
-  for (const double n : numbers) list += (list.empty() ? "" : ", ") + number_text(n);
-  return std::string(kShapes[static_cast<std::size_t>(shape)]) + "(" + list + ")";
+  return std::string(kShapes[static_cast<std::size_t>(shape)]) + "(" +
+         joined(numbers, ", ", [](double n) { return number_text(n); }) + ")";
 }
 
 Distribution distribution(const std::string& text, const std::string& what,
@@ -136,17 +131,17 @@ Distribution distribution(const std::string& text, const std::string& what,
     throw InputError(what + " = " + text + ": " + why);
   };
   const auto open = text.find('(');
-  const std::string body = trimmed(text);
-  if (open == std::string::npos || !body.ends_with(')'))
+  if (open == std::string::npos || !trimmed(text, " ").ends_with(')'))
     fail("must be a distribution such as normal(40, 0.1)");
-  std::string word = trimmed(text.substr(0, open));
+  std::string word(trimmed(text.substr(0, open), " "));
   std::vector<double> numbers;
   std::string rest = text.substr(open + 1, text.rfind(')') - open - 1);
   for (bool more = true; more;) {
     const auto comma = rest.find(',');
     more = comma != std::string::npos;
-    const auto number = number_in(trimmed(rest.substr(0, comma)));
-    if (!number) fail("\"" + trimmed(rest.substr(0, comma)) + "\" must be a finite number");
+    const std::string part(trimmed(rest.substr(0, comma), " "));
+    const auto number = number_in(part);
+    if (!number) fail("\"" + part + "\" must be a finite number");
     numbers.push_back(*number);
     if (more) rest.erase(0, comma + 1);
   }

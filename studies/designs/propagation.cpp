@@ -8,6 +8,7 @@
 
 #include "bentaxis/designs/points.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/memory.h"
 #include "bentaxis/study/reporting.h"
@@ -157,7 +158,7 @@ FirstOrder first_order(const Response& response, std::size_t outputs,
   std::vector<double> points = means;
   for (std::size_t i = 0; i < n; ++i)
     for (const double step : kStep) {
-      points.insert(points.end(), means.begin(), means.end());
+      append(points, means);
       points[points.size() - n + i] += step * numbers.distributions[i].standard_deviation();
     }
   const std::size_t count = 1 + kSteps * n;
@@ -167,9 +168,7 @@ FirstOrder first_order(const Response& response, std::size_t outputs,
 
   FirstOrder found;
   for (const std::string& reason : reasons)
-    if (!reason.empty() &&
-        std::find(found.reasons.begin(), found.reasons.end(), reason) == found.reasons.end())
-      found.reasons.push_back(reason);
+    if (!reason.empty()) add_once(found.reasons, reason);
   found.values.assign(results.begin(), results.begin() + outputs);
   const std::vector<double> covariances = numbers.covariances();
   for (std::size_t o = 0; o < outputs; ++o) {
@@ -188,7 +187,7 @@ FirstOrder first_order(const Response& response, std::size_t outputs,
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j)
         if (covariances[i * n + j] != 0) variance += c[i] * c[j] * covariances[i * n + j];
-    found.derivatives.insert(found.derivatives.end(), c.begin(), c.end());
+    append(found.derivatives, c);
     found.deviations.push_back(std::isnan(variance) ? not_computed()
                                                     : std::sqrt(std::max(0.0, variance)));
   }

@@ -23,8 +23,8 @@ std::size_t place_of(const std::vector<Variable>& variables, const Variable& wan
       variables.begin());
 }
 
-std::vector<Variable> joined(std::vector<Variable> variables,
-                             const std::vector<Variable>& uncertain) {
+std::vector<Variable> with_uncertain(std::vector<Variable> variables,
+                                     const std::vector<Variable>& uncertain) {
   for (const Variable& v : uncertain)
     if (place_of(variables, v) == variables.size()) variables.push_back(v);
   return variables;
@@ -73,7 +73,8 @@ struct QuantileEvaluator::Implementation {
       : outputs(std::move(wanted)),
         designs(base, variables),
         uncertain(uncertain_variables(base)),
-        evaluator(Family(base, joined(variables, uncertain.variables)), outputs_in(outputs), model),
+        evaluator(Family(base, with_uncertain(variables, uncertain.variables)), outputs_in(outputs),
+                  model),
         samples(count) {
     must_move(base, uncertain, variables);
     for (const QuantileOutput& q : outputs) {

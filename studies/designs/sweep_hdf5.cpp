@@ -2,6 +2,7 @@
 
 #include "bentaxis/designs/sweep_tables.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 
 #ifdef BENTAXIS_HAS_HDF5
 
@@ -170,8 +171,7 @@ struct Hdf5File::Implementation {
       attribute(*columns.back(), "unit", v.variable.unit());
       attribute(*columns.back(), "meaning", v.variable.meaning());
       attribute(*columns.back(), "symbol", v.variable.symbol());
-      std::string words;
-      for (const std::string& word : v.variable.words()) words += (words.empty() ? "" : ",") + word;
+      const std::string words = joined(v.variable.words(), ",");
       if (!words.empty()) attribute(*columns.back(), "words", words);
     }
     for (const Output& o : sweep.plan().outputs) {

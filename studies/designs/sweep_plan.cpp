@@ -7,6 +7,7 @@
 #include "bentaxis/designs/sweep.h"
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/words.h"
 #include "bentaxis/study/spaced_values.h"
@@ -93,9 +94,7 @@ Varied varied(const std::string& name, const std::string& values, Sampling sampl
 }
 
 std::string text_list(const std::vector<std::string>& texts) {
-  std::string list;
-  for (const std::string& text : texts) list += (list.empty() ? "" : ", ") + toml_text(text);
-  return "[" + list + "]";
+  return "[" + joined(texts, ", ", toml_text) + "]";
 }
 
 }  // namespace
@@ -129,7 +128,7 @@ std::vector<double> levels_of(const std::string& text, const Variable& variable)
       some = study::spaced_values(variable.name(), part, variable.unit(), kMaxValues);
     else
       some = {variable.value_of(part)};
-    levels.insert(levels.end(), some.begin(), some.end());
+    append(levels, some);
   }
   for (const double level : levels)
     if (variable.discrete() && level != std::round(level))
@@ -220,12 +219,10 @@ std::string plan_text(const SweepPlan& plan) {
   if (!smaller.empty()) text += "minimise = " + text_list(smaller) + "\n";
   if (!larger.empty()) text += "maximise = " + text_list(larger) + "\n";
   for (const Varied& v : plan.varied) {
-    std::string values;
-    for (const double level : v.levels)
-      values += (values.empty() ? "" : ",") + v.variable.text(level);
-    if (v.levels.empty()) values = v.distribution.text();
+    const std::string levels =
+        joined(v.levels, ",", [&](double level) { return v.variable.text(level); });
     text += "\n[[vary]]\nparameter = " + toml_text(v.variable.name()) +
-            "\nvalues = " + toml_text(values) + "\n";
+            "\nvalues = " + toml_text(v.levels.empty() ? v.distribution.text() : levels) + "\n";
   }
   return text;
 }

@@ -10,7 +10,9 @@
 #include <set>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/text.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::study::mapping {
@@ -101,12 +103,6 @@ double roundest(const std::function<double(const std::vector<double>&)>& cost,
   return 0;
 }
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 std::vector<std::string> words_of(const std::string& name) {
   std::vector<std::string> words;
   std::string word;
@@ -114,15 +110,11 @@ std::vector<std::string> words_of(const std::string& name) {
     if (is_word_letter(c)) {
       word += c;
     } else if (!word.empty()) {
-      words.push_back(lower(word));
+      words.push_back(lower_case(word));
       word.clear();
     }
   }
   return words;
-}
-
-bool contains(const std::vector<std::string>& words, const std::string& word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
 }
 
 std::vector<std::pair<std::string, int>> axis_readings(const std::string& name) {
@@ -167,7 +159,7 @@ int piston_in(const std::string& name, int pistons) {
 }
 
 bool is_quantity(const std::vector<std::string>& words, const std::string& quantity) {
-  return contains(words, lower(quantity));
+  return contains(words, lower_case(quantity));
 }
 
 bool named(const std::vector<std::string>& words, const Channel& channel) {

@@ -49,9 +49,7 @@ double roundest(const std::function<double(const std::vector<double>&)>& cost,
 
 // ---- Names
 
-std::string lower(std::string text);
 std::vector<std::string> words_of(const std::string& name);
-bool contains(const std::vector<std::string>& words, const std::string& word);
 // Places in a name that may be the letter of an axis: a word's last letter but for one digit behind
 // it ("FX", "x2", "Force_y"), or columns 1 to 3 of a matrix. The name with '?' there, and the axis.
 std::vector<std::pair<std::string, int>> axis_readings(const std::string& name);

@@ -4,7 +4,6 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <set>
 #include <sstream>
@@ -16,7 +15,9 @@
 #include "bentaxis/files/new_folder.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/text.h"
 #include "bentaxis/study/reference_set.h"
 #include "bentaxis/study/regression.h"
 
@@ -34,12 +35,6 @@ constexpr const char* kGoldenTolerance = "1e-11";
 // The hydraulic model steps in time: other round-off chooses other steps, and its error of ln p is
 // up to 1e-7 (docs/hydraulics.md); reactions that are small against the pressure forces magnify it.
 constexpr const char* kHydraulicGoldenTolerance = "1e-6";
-
-void replace_all(std::string& text, const std::string& old, const std::string& now) {
-  for (std::size_t at = text.find(old); at != std::string::npos;
-       at = text.find(old, at + now.size()))
-    text.replace(at, old.size(), now);
-}
 
 void must_be_new(const fs::path& folder) {
   if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
@@ -96,9 +91,7 @@ constexpr double kBestTolerance = 1e-5;
 constexpr double kOfRounding = 4;
 
 std::string list_text(const std::vector<std::string>& texts) {
-  std::string list;
-  for (const auto& text : texts) list += (list.empty() ? "" : ", ") + toml_text(text);
-  return "[" + list + "]";
+  return "[" + joined(texts, ", ", toml_text) + "]";
 }
 
 std::string factor_lines(const std::string& unit, double factor) {
@@ -117,9 +110,7 @@ std::string curve_text(const MappingGuess& guess) {
                      "put it into ignore.\nundecided = " +
                          list_text(open) + "\n";
   std::vector<std::string> ignored = curve.ignored;
-  std::erase_if(ignored, [&](const std::string& name) {
-    return std::find(open.begin(), open.end(), name) != open.end();
-  });
+  std::erase_if(ignored, [&](const std::string& name) { return contains(open, name); });
   std::string text = fmt::format(
       "[[curve]]\nfile = {}\n{}points = {}\nguessed = true  # every report lists the assumptions; "
       "remove this line once you have checked them\n{}ignore = {}  # columns that stand for no "
@@ -262,8 +253,8 @@ std::vector<fs::path> make_reference(const Case& the_case, bool changed, const f
   if (outcome.state == Outcome::State::unusable || nothing) {
     std::string why = outcome.error;
     if (!mapping.empty())
-      replace_all(why, (folder.here() / "description.toml").string(), mapping.string());
-    replace_all(why, folder.here().string(), out.string());
+      why = replace_all(why, (folder.here() / "description.toml").string(), mapping.string());
+    why = replace_all(why, folder.here().string(), out.string());
     const std::string name = (mapping.empty() ? curve : mapping).string();
     throw InputError((why.find(name) == std::string::npos ? name + ": " : "") + why);
   }

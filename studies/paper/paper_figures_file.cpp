@@ -6,6 +6,7 @@
 
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/text.h"
 #include "bentaxis/study/paper_study.h"
 
 namespace bentaxis::study {
@@ -127,8 +128,7 @@ PaperFigure read_figure(TableReader in, const PaperFigures& list) {
 
 std::string PaperAxis::short_text() const {
   if (!range) return "unknown";
-  return fmt::format("{:g} to {:g}{}{}", range->first, range->second, unit.empty() ? "" : " ",
-                     unit);
+  return fmt::format("{:g} to {:g}{}", range->first, range->second, unit_after(unit));
 }
 
 std::string PaperAxis::text() const {

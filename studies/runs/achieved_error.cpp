@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/load_scale.h"
 
@@ -33,8 +34,7 @@ AchievedError achieved_error(const Case& the_case, const Samples& samples,
   const auto furthest = [&](std::initializer_list<std::string> quantities) {
     return comparison.furthest([&](const Channel& channel) {
       return channel.kind == ChannelKind::reaction && multibody::computes(scene, channel) &&
-             (quantities.size() == 0 || std::find(quantities.begin(), quantities.end(),
-                                                  channel.quantity) != quantities.end());
+             (quantities.size() == 0 || contains(quantities, channel.quantity));
     });
   };
   const auto error_of = [&](std::initializer_list<std::string> quantities) {

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/words.h"
 
 namespace bentaxis::study {
@@ -11,12 +12,6 @@ namespace {
 
 bool is_called(const Channel& channel, const std::string& name) {
   return channel.quantity == name || channel.name == name;
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
 }
 
 std::string hint(const std::string& name, const std::vector<Channel>& channels) {
@@ -33,9 +28,7 @@ std::string hint(const std::string& name, const std::vector<Channel>& channels) 
 
 std::vector<std::string> quantity_names() {
   std::vector<std::string> known;
-  for (const Channel& channel : ChannelLayout(1).channels())
-    if (std::find(known.begin(), known.end(), channel.quantity) == known.end())
-      known.push_back(channel.quantity);
+  for (const Channel& channel : ChannelLayout(1).channels()) add_once(known, channel.quantity);
   return known;
 }
 

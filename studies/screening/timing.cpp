@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/plausibility.h"
@@ -155,9 +156,9 @@ std::string value_text(const TimingRow& r) {
 }
 
 std::string angles_text(const TimingRow& r) {
-  std::string text;
-  for (const auto& [from, to] : r.angles)
-    text += fmt::format("{}{:.4g}..{:.4g}", text.empty() ? "" : ", ", from, to);
+  const std::string text = joined(r.angles, ", ", [](const auto& range) {
+    return fmt::format("{:.4g}..{:.4g}", range.first, range.second);
+  });
   if (!text.empty()) return text + " deg";
   return r.theta_deg ? fmt::format("{:.4g} deg", *r.theta_deg) : "";
 }

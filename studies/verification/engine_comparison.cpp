@@ -1,7 +1,6 @@
 #include "bentaxis/study/engine_comparison.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include "bentaxis/engines/run.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/achieved_error.h"
 #include "bentaxis/study/reference_set.h"
@@ -171,23 +171,21 @@ namespace {
 
 // The settings of one engine, of those that are asked for.
 std::string settings_for(const std::string& engine, const std::vector<std::string>& settings) {
-  std::string own;
+  std::vector<std::string> own;
   for (const std::string& setting : settings)
-    if (setting.starts_with(engine + "."))
-      own += (own.empty() ? "" : " ") + setting.substr(engine.size() + 1);
-  return own;
+    if (setting.starts_with(engine + ".")) own.push_back(setting.substr(engine.size() + 1));
+  return joined(own, " ");
 }
 
 }  // namespace
 
 void check_engines(const EngineOptions& options) {
-  const std::string known = fmt::format("{}", fmt::join(engines::known_engines(), ", "));
   for (auto it = options.names.begin(); it != options.names.end(); ++it)
     if (std::find(options.names.begin(), it, *it) != it)
       throw InputError("--engine " + *it + ": is specified more than once");
   for (const std::string& name : options.names)
     if (!engines::is_engine(name))
-      throw InputError("--engine " + name + ": must be one of " + known +
+      throw InputError("--engine " + name + ": must be one of " + joined(engines::known_engines()) +
                        ", or have a module in BENTAXIS_ENGINE_PATH");
   for (const std::string& setting : options.settings) {
     const std::size_t dot = setting.find('.'), equals = setting.find('=');
@@ -195,7 +193,7 @@ void check_engines(const EngineOptions& options) {
         equals + 1 == setting.size() || setting.find(' ') != std::string::npos)
       throw InputError("--engine-setting " + setting + ": must be ENGINE.NAME=VALUE");
     const std::string engine = setting.substr(0, dot);
-    if (std::find(options.names.begin(), options.names.end(), engine) == options.names.end())
+    if (!contains(options.names, engine))
       throw InputError("--engine-setting " + setting + ": " + engine + " must be one of --engine");
     const std::string name = setting.substr(dot + 1, equals - dot - 1);
     std::string names;

@@ -13,6 +13,7 @@
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/max_abs.h"
 #include "bentaxis/results/stopwatch.h"
@@ -153,8 +154,7 @@ namespace {
 HardOutcome outcome_of(const HardCase& hard, const std::string& model) {
   HardOutcome outcome;
   outcome.model = model;
-  outcome.refusal_expected =
-      std::find(hard.refused.begin(), hard.refused.end(), model) != hard.refused.end();
+  outcome.refusal_expected = contains(hard.refused, model);
   return outcome;
 }
 

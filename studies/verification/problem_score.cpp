@@ -9,6 +9,8 @@
 
 #include "bentaxis/compare/difference.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
+#include "bentaxis/pump/text.h"
 #include "bentaxis/pump/unit_of_measure.h"
 #include "bentaxis/pump/words.h"
 #include "bentaxis/study/problem.h"
@@ -39,12 +41,6 @@ NameParts parts_of(const std::string& name) {
     unit.replace(per, 5, "/");
   if (find_written_unit(unit) == nullptr && unit != "Ns") return {name, ""};
   return {name.substr(0, cut), unit};
-}
-
-std::string in_lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return text;
 }
 
 // A column of theirs that stands for one of ours.
@@ -80,7 +76,7 @@ class Matcher {
         return Source{c, 1, ""};
       }
       if (found || used_.count(c) > 0) continue;
-      if (in_lower_case(parts_[c].stem) != in_lower_case(wanted.stem)) continue;
+      if (lower_case(parts_[c].stem) != lower_case(wanted.stem)) continue;
       if (parts_[c].unit.empty()) {
         found = {c, 1, fmt::format("{} has no unit: taken as {}", table_.header[c], wanted.unit)};
         continue;
@@ -219,10 +215,7 @@ class Scorer {
 
  private:
   std::string asked() const {
-    std::string text;
-    for (const ProblemColumn& column : problem_.columns)
-      text += (text.empty() ? "" : ", ") + column.name;
-    return text;
+    return joined(problem_.columns, ", ", [](const ProblemColumn& column) { return column.name; });
   }
 
   void find_rows() {
@@ -369,15 +362,14 @@ class Scorer {
   }
 
   void say_gaps() {
-    std::string missing;
+    std::vector<std::string> missing;
     std::set<std::string> wanted;
     for (const ColumnScore& one : result_.columns)
       if (one.state == ColumnScore::State::missing) {
-        const std::string& name = problem_.columns[one.column].name;
-        missing += (missing.empty() ? "" : ", ") + name;
-        wanted.insert(name);
+        missing.push_back(problem_.columns[one.column].name);
+        wanted.insert(missing.back());
       }
-    if (!missing.empty()) result_.gaps.push_back("no column " + missing);
+    if (!missing.empty()) result_.gaps.push_back("no column " + joined(missing));
     constexpr std::size_t kListed = 4;
     std::string others;
     const std::vector<std::string> unused = matcher_.unused();
