@@ -9,13 +9,9 @@ namespace bentaxis::coupled {
 
 double PortEdges::edge(std::ptrdiff_t index) const {
   const auto count = static_cast<std::ptrdiff_t>(edges_deg_.size());
-  std::ptrdiff_t turns = index / count;
-  std::ptrdiff_t left = index % count;
-  if (left < 0) {
-    left += count;
-    --turns;
-  }
-  return radians(edges_deg_[static_cast<std::size_t>(left)] + 360 * static_cast<double>(turns));
+  const std::ptrdiff_t turns = index / count - (index % count < 0 ? 1 : 0);
+  return radians(edges_deg_[static_cast<std::size_t>(index - turns * count)] +
+                 360 * static_cast<double>(turns));
 }
 
 void PortEdges::set() {

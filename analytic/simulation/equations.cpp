@@ -69,9 +69,7 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
   for (int i = 0; i < kAngles; ++i) {
     const double angle = 2 * kPi * i / kAngles;
     instant_.turn(angle, start_speed_);
-    for (int k = 0; k < model_.layout().pistons(); ++k)
-      instant_.chamber_pressure[k] =
-          pressure_(piston_angle_deg(angle / kRadPerDegree, k + 1, model_.layout().pistons()));
+    set_pressures(angle);
     const Response r = respond({0, 0});
     torque_scale_ = std::max(torque_scale_, std::abs(r.drive_torque));
     tooth_scale_ = std::max(tooth_scale_, std::abs(r.tooth_force));
