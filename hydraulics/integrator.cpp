@@ -7,7 +7,6 @@
 #include "bentaxis/hydraulics/versions.h"
 #include "bentaxis/numerics/stiff_integrator.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/pump/number.h"
 
 namespace bentaxis::hydraulics {
 namespace {
@@ -146,11 +145,8 @@ void summarize(const Network& network, const Integrals& over_period, Summary& su
   summary.mass_flow = over_period.load / time;
   summary.flow = summary.mass_flow / density;
   // What is spent is the ideal flow of a pump and the flow that a motor takes.
-  if (!summary.motors())
-    summary.volumetric_efficiency = summary.flow / summary.ideal_flow;
-  else
-    summary.volumetric_efficiency =
-        summary.flow < 0 ? summary.ideal_flow / summary.flow : not_computed();
+  summary.volumetric_efficiency = summary.motors() ? summary.ideal_flow / summary.flow
+                                                   : summary.flow / std::abs(summary.ideal_flow);
   summary.leakage = over_period.leakage / time / density;
   summary.work = way * over_period.work * n;
   summary.mass_in = over_period.suction * n;

@@ -142,6 +142,19 @@ class AnswersTest(unittest.TestCase):
             float(row["Fh_z2_N"]) > 0 or math.hypot(float(row["xh_x2_mm"] or 0), float(row["yh_y2_mm"] or 0)) > 26
             or float(row["Rcs_z4_N"]) < 0 or float(row["Rb1_z1_N"]) < 0 for row in rows)
 
+    def test_turn_of_a_smaller_scene(self):
+        """What one model alone has computed has agreed with nothing."""
+        small = ("--set", "operation.samples_per_revolution=36")
+        answers = self.answers("compare", self.case("bap63_rated"), "--scene", "piston", *small)
+        self.assertTrue(all(answer.startswith("By the analytic model alone: ") for answer in answers[:2]), answers)
+        self.assertRegex(self.verdict()["headline"], r"^The two models agree on what both computed: Rs, Rc, .*\. Largest difference ")
+        self.assertNotIn("Rb1", self.verdict()["headline"])
+        self.assertEqual(self.verdict()["word"], "Agrees in part")
+        whole = self.answers("compare", self.case("bap63_rated"), *small)
+        self.assertEqual([answer.removeprefix("By the analytic model alone: ") for answer in answers[:2]], whole[:2])
+        self.assertRegex(self.verdict()["headline"], r"^The two models agree\. Largest difference ")
+        self.assertNotIn("word", self.verdict())
+
     def test_turn_beyond_two_limits_at_different_angles(self):
         self.answers("compare", self.case("bap63_rated"), "--set", "operation.speed_rpm=0", "--set", "operation.samples_per_revolution=72",
                      "--set", "block.bottom_area_mm2=140")

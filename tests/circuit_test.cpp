@@ -826,6 +826,8 @@ TEST(Backwards, OverTheMirroredPlateIsForwards) {
     EXPECT_NEAR(b.summary.work, -a.summary.work, scaled(1e-7) * a.summary.work);
     EXPECT_NEAR(b.summary.flow, a.summary.flow, scaled(1e-7) * a.summary.flow);
     EXPECT_NEAR(b.summary.ideal_flow, -a.summary.ideal_flow, 1e-15);
+    EXPECT_NEAR(b.summary.volumetric_efficiency, a.summary.volumetric_efficiency, 1e-6);
+    EXPECT_FALSE(b.summary.motors());
     EXPECT_NEAR(wrap_degrees(-b.summary.chamber_greatest_deg), a.summary.chamber_greatest_deg, 0.2);
     EXPECT_NEAR(b.timing.backflow, a.timing.backflow, 1e-3 * a.timing.backflow + 1e-12);
     // Row i of one is row -i of the other; rates change their sign.
@@ -841,6 +843,24 @@ TEST(Backwards, OverTheMirroredPlateIsForwards) {
     }
     for (std::size_t i = 0; i < a.orders.size(); ++i)
       EXPECT_NEAR(a.orders[i].flow, b.orders[i].flow, 1e-6 * a.summary.mass_flow);
+  }
+}
+
+// A leak costs a pump oil that it does not deliver, and a motor oil that does not turn it.
+TEST(Backwards, LeaksMakeBothWorse) {
+  for (const bool motor : {false, true}) {
+    const auto efficiency = [&](const std::string& leakage) {
+      const Summary s =
+          steady_state(rated({motor ? "operation.speed_rpm=-1500" : "operation.speed_rpm=1500",
+                              "load.kind=constant_pressure",
+                              "hydraulics.leakage_l_per_min_per_bar=" + leakage}))
+              .summary;
+      EXPECT_EQ(s.motors(), motor);
+      return s.volumetric_efficiency;
+    };
+    const double tight = efficiency("0.0001"), leaky = efficiency("0.01");
+    EXPECT_LT(tight, 1);
+    EXPECT_LT(leaky, tight - 0.05) << motor;
   }
 }
 

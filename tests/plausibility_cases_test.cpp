@@ -71,6 +71,7 @@ const Changed kRated[] = {
     {"speed-low", "operation.speed_rpm=46", "operation.speed_rpm=0"},
     {"gravity", "operation.gravity_m_per_s2=1.4", "operation.gravity_m_per_s2=0"},
     {"samples", "operation.samples_per_revolution=5", "operation.samples_per_revolution=6"},
+    {"samples", "operation.samples_per_revolution=25", "operation.samples_per_revolution=30"},
     {"pressure-beyond-1000-bar", "pressure.delivery_bar=1001", "pressure.delivery_bar=999"},
     {"pressure-low", "pressure.delivery_bar=2.9", "pressure.delivery_bar=0"},
     {"delivery-below-suction", "pressure.suction_bar=276", "pressure.suction_bar=275"},

@@ -1095,7 +1095,7 @@ const Check kChecks[] = {
                 f.turn->highest_pressure < -f.turn->lowest_pressure / 2 ? Slips{kSign} : Slips{}),
             outside("[pressure] file: its work over a turn, over the ideal one,",
                     f.turn->work_ratio, -HUGE_VAL, 1.5, "",
-                    fmt::format("times the ideal work with delivery_bar = {:.6g}", delivery))});
+                    fmt::format("delivery_bar = {:.6g}", delivery))});
      }},
     // Port plate
     {"lands-off-bores",
