@@ -761,6 +761,26 @@ TEST(Characters, Utf8AndWindows1252) {
   for (const char* text : {"\xe4", "\xc3", "\xc0\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80",
                            "\xe0\x80\x80", "\xff", "\x80"})
     EXPECT_FALSE(is_utf8(text)) << text;
+  const auto refusal = [](const std::string& text) -> std::string {
+    try {
+      TomlFile file(text, "a.toml");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal("a = 1\r\nb = 2\r\n"), "");
+  EXPECT_EQ(
+      refusal("a = 1\rb = 2\r"),
+      "a.toml: its lines end with a carriage return alone: save it with line feeds (LF or CR LF)");
+  EXPECT_EQ(refusal(std::string("\xFF\xFE"
+                                "a\0=\0",
+                                6)),
+            "a.toml: is in UTF-16: save it as UTF-8");
+  EXPECT_EQ(refusal("a = 1\n# \xE4\nb = 2\n"),
+            "a.toml:2: a letter that is not in UTF-8, as one of Latin-1 or Windows-1252: save the "
+            "file as "
+            "UTF-8");
   EXPECT_EQ(utf8_of_windows_1252("a\xe4\x80\x96"), "a\xc3\xa4\xe2\x82\xac\xe2\x80\x93");
   EXPECT_TRUE(is_utf8(utf8_of_windows_1252("\x81\x8d\x8f\x90\x9d\xff")));
 }

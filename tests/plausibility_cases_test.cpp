@@ -74,6 +74,7 @@ const Changed kRated[] = {
     {"samples", "operation.samples_per_revolution=25", "operation.samples_per_revolution=30"},
     {"pressure-beyond-1000-bar", "pressure.delivery_bar=1001", "pressure.delivery_bar=999"},
     {"pressure-low", "pressure.delivery_bar=2.9", "pressure.delivery_bar=0"},
+    {"pressure-low", "pressure.delivery_bar=-1.02", "pressure.delivery_bar=-1.01"},
     {"delivery-below-suction", "pressure.suction_bar=276", "pressure.suction_bar=275"},
     {"suction-pressure", "pressure.suction_bar=1.01325", "pressure.suction_bar=1.1"},
     {"transition", "pressure.transition_deg=0.5", "pressure.transition_deg=0"},

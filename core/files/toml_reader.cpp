@@ -137,6 +137,24 @@ toml::table parsed_toml(const std::string& text, const std::string& file) {
   return table;
 }
 
+// An editor's way of writing text that TOML does not know.
+void check_encoding(const std::string& text) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw Refusal{0, "is in UTF-16: save it as UTF-8"};
+  if (text.find('\n') == std::string::npos && text.find('\r') != std::string::npos)
+    throw Refusal{
+        0, "its lines end with a carriage return alone: save it with line feeds (LF or CR LF)"};
+  if (is_utf8(text)) return;
+  std::size_t line = 1;
+  for (std::size_t at = 0, end = 0; end != std::string::npos; at = end + 1, ++line) {
+    end = text.find('\n', at);
+    if (!is_utf8(text.substr(at, end - at)))
+      throw Refusal{line,
+                    "a letter that is not in UTF-8, as one of Latin-1 or Windows-1252: save the "
+                    "file as UTF-8"};
+  }
+}
+
 std::string shortened(const std::string& text) {
   if (text.size() <= kShown) return text;
   std::size_t end = kShown;
@@ -556,6 +574,7 @@ void TableReader::record(const std::string& key, std::string value, bool by_defa
 
 TomlFile::TomlFile(const std::string& text, std::filesystem::path file) : file_(std::move(file)) {
   try {
+    check_encoding(text);
     const auto document =
         std::make_shared<Document>(Document{text, parsed_toml(text, file_.string()), {}});
     root_ =

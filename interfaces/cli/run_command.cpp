@@ -63,6 +63,8 @@ int run_states(const RunCommandOptions& options, const study::PreparedCase& read
   folder.add(name + ".csv", to_csv(table));
   if (run_options.teeth) folder.add("teeth_" + name + ".csv", to_csv(teeth));
   std::vector<std::string> answers = summary.answers();
+  for (std::string& answer : answers)
+    answer.insert(0, "Of these " + std::to_string(table.results.rows()) + " states: ");
   answers.emplace_back(
       "Limits of validity (film force, its place, tooth flank, bearing) are checked over turns at "
       "constant speed, not at given states.");
@@ -143,8 +145,12 @@ int run(const RunCommandOptions& options) {
   }
   if (std::string play = study::free_play_answer(ready.the_case.pump); !play.empty())
     answers.push_back(std::move(play));
-  append(answers,
-         study::limit_answers(study::limits_of_turn(ready.the_case, assumptions, ready.pressure)));
+  for (std::string& answer :
+       study::limit_answers(study::limits_of_turn(ready.the_case, assumptions, ready.pressure)))
+    // Of a smaller scene this run has not computed what they are about.
+    answers.push_back(run_options.scene.scene == multibody::Scene::full || analytic
+                          ? std::move(answer)
+                          : "By the analytic model: " + answer);
   if (ready.hydraulics)
     answers.push_back(study::timing_answer(study::timing_rows(ready.the_case, *ready.hydraulics)));
   return finish(folder, ready.the_case.name, answers);

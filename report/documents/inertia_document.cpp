@@ -343,8 +343,10 @@ std::vector<std::string> answers_of(const InertiaStudy& s) {
       if (cause->peak(group) > largest->peak(group)) largest = cause;
     answers.push_back(fmt::format(
         "Two masses change {} of a piston by up to {:.3g} N without load at {}; the largest part, "
-        "{:.3g} N, comes from: {}.",
-        piston_force, c.all.peak(group), rpm(s.fastest), largest->peak(group), largest->name));
+        "{:.3g} N{}, comes from: {}.",
+        piston_force, c.all.peak(group), rpm(s.fastest), largest->peak(group),
+        largest->peak(group) > c.all.peak(group) ? " before others take some of it away" : "",
+        largest->name));
   }
   if (!s.lumpings.empty()) {
     const auto& best = *std::min_element(

@@ -1023,9 +1023,14 @@ const Check kChecks[] = {
                             ? one("[pressure] file: its highest", f.turn->highest_pressure)
                             : std::string()});
      }},
-    {"pressure-low", "0 < delivery < 3 bar. 0 is no load and accepted",
-     [](const Facts& f) { return f.ports.delivery > 0; },
+    {"pressure-low",
+     "0 < delivery < 3 bar, or delivery below -1.014 bar (absolute vacuum). 0 is no load and "
+     "accepted",
+     [](const Facts& f) { return f.ports.delivery != 0; },
      [](const Facts& f) {
+       if (f.ports.delivery < 0)
+         return outside(f, "pressure", "delivery_bar", -1.014, HUGE_VAL,
+                        "absolute vacuum is at -1.013", {kSign});
        return outside(f, "pressure", "delivery_bar", 3, HUGE_VAL, "almost no load",
                       {{100, "in units of 100 bar?"}, {1000, "in kbar?"}});
      }},
@@ -1167,11 +1172,13 @@ const Check kChecks[] = {
        if (limit == nullptr) return "";
        return fmt::format(
            "{}the block lifts off its plate in {:.3g} % of the turn, worst {:.4g} N at {:.4g} deg: "
-           "block balance (push of the lands over bottom areas and spring) is {:.3g} (lands {:.4g} "
+           "block balance (push of the lands over bottom areas and spring) is {} (lands {:.4g} "
            "N, bottom_area_mm2 = {:.6g} and spring_force_N = {:.6g} make {:.4g} N)",
            by_ideal_pressure(f), 100 * limit->violated_share, limit->worst, limit->theta_deg,
-           block_balance(*f.turn), f.turn->land_force, mm2(f.pump.block.bottom_area),
-           f.pump.block.spring_force, f.turn->press_force);
+           f.turn->press_force > 0 ? fmt::format("{:.3g}", block_balance(*f.turn))
+                                   : std::string("none, as nothing presses"),
+           f.turn->land_force, mm2(f.pump.block.bottom_area), f.pump.block.spring_force,
+           f.turn->press_force);
      }},
     {"block-overpressed",
      "block balance below 0.3 at more than 100 bar: the film would have to carry the rest",
