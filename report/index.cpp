@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -56,7 +57,7 @@ std::string address(const std::string& path) {
 
 const char* tone_of(const IndexEntry& entry) {
   if (entry.agrees && !*entry.agrees) return "bad";
-  if (!entry.warnings.empty()) return "warn";
+  if (!entry.warnings.empty() || !entry.not_valid.empty()) return "warn";
   return entry.agrees ? "good" : "neutral";
 }
 
@@ -70,9 +71,9 @@ std::string warnings_of(const IndexEntry& entry) {
                      entry.warnings.size() == 1 ? "" : "s", names);
 }
 
-std::string word_of(const IndexEntry& entry) {
-  if (!entry.word.empty()) return entry.word;
-  return !entry.agrees ? "No verdict" : *entry.agrees ? "Agrees" : "Differs";
+// The word of a report's page, with where it is not valid.
+std::string whole_word_of(const IndexEntry& entry) {
+  return index_word(entry) + (entry.not_valid.empty() ? "" : "; not valid " + entry.not_valid);
 }
 
 std::string row_of(const IndexEntry& entry) {
@@ -89,9 +90,28 @@ std::string row_of(const IndexEntry& entry) {
       "<td data-head=\"Made\"><div>{}<small>{}</small></div></td>"
       "<td data-head=\"Pump\"><div>{}</div></td></tr>\n",
       markup_of(address(target)), markup_of(entry.title), markup_of(target),
-      markup_of(entry.case_file), tone_of(entry), markup_of(word_of(entry)),
+      markup_of(entry.case_file), tone_of(entry), markup_of(whole_word_of(entry)),
       markup_of(entry.headline), markup_of(warnings_of(entry)), worst, markup_of(entry.date),
       markup_of(entry.command), image(entry.picture));
+}
+
+// "2 differ, 1 no design": what is wrong by the word of its page.
+std::string wrong_counts(const std::vector<IndexEntry>& entries) {
+  std::map<std::string, std::size_t> others;
+  std::size_t differ = 0;
+  for (const IndexEntry& entry : entries) {
+    if (tone_of(entry) != std::string_view("bad")) continue;
+    std::string word = index_word(entry);
+    if (word.ends_with("iffers")) {
+      ++differ;
+      continue;
+    }
+    if (word[0] >= 'A' && word[0] <= 'Z') word[0] = static_cast<char>(word[0] - 'A' + 'a');
+    ++others[word];
+  }
+  std::string text = differ > 0 ? fmt::format(", {} differ", differ) : "";
+  for (const auto& [word, n] : others) text += fmt::format(", {} {}", n, word);
+  return text;
 }
 
 std::string counts_of(const std::vector<IndexEntry>& entries) {
@@ -100,12 +120,39 @@ std::string counts_of(const std::vector<IndexEntry>& entries) {
                          [&](const IndexEntry& e) { return tone_of(e) == std::string_view(tone); });
   };
   std::string text = fmt::format("{} report{}", entries.size(), entries.size() == 1 ? "" : "s");
-  for (const auto& [tone, words] : {std::pair{"bad", "differ"},
-                                    {"warn", "with warnings"},
-                                    {"good", "agree"},
-                                    {"neutral", "without a verdict"}})
+  text += wrong_counts(entries);
+  for (const auto& [tone, words] :
+       {std::pair{"warn", "with warnings"}, {"good", "agree"}, {"neutral", "without a verdict"}})
     if (const auto n = count(tone); n > 0) text += fmt::format(", {} {}", n, words);
+  const auto invalid = std::count_if(entries.begin(), entries.end(),
+                                     [](const IndexEntry& e) { return !e.not_valid.empty(); });
+  if (invalid > 0) text += fmt::format("; {} of them not valid throughout", invalid);
   return text;
+}
+
+constexpr std::size_t kMostNamed = 3;  // in a headline
+
+// "2 could not be read, so nothing can be said of them: a.json (..), b (..)".
+std::string unread_text(const std::vector<UnreadFile>& unread) {
+  std::string text =
+      fmt::format("{} could not be read, so nothing can be said of {}: ", unread.size(),
+                  unread.size() == 1 ? "it" : "them");
+  for (std::size_t i = 0; i < std::min(kMostNamed, unread.size()); ++i)
+    text += fmt::format("{}{} ({})", i > 0 ? ", " : "", unread[i].path, unread[i].reason);
+  if (unread.size() > kMostNamed) text += fmt::format(", {} more", unread.size() - kMostNamed);
+  return text;
+}
+
+std::string unread_list(const std::vector<UnreadFile>& unread) {
+  if (unread.empty()) return {};
+  std::string list;
+  for (const UnreadFile& file : unread)
+    list += "<li><code>" + markup_of(file.path) + "</code>: " + markup_of(file.reason) + "</li>\n";
+  return fmt::format(
+      "<div class=\"banner bad unread\" role=\"status\"><p class=\"word\">Not read: "
+      "{}</p>\n<ul>\n{}"
+      "</ul></div>\n",
+      unread.size(), list);
 }
 
 std::string skipped_text(const std::vector<std::string>& skipped) {
@@ -118,14 +165,22 @@ std::string skipped_text(const std::vector<std::string>& skipped) {
       skipped.size(), list);
 }
 
+// What every report has (docs/report.schema.json).
+bool is_report(const Json& json) {
+  return json.is_object() && member(json, "schema").is_number() &&
+         member(json, "program").is_array() && member(json, "title").is_string();
+}
+
 }  // namespace
+
+std::string index_word(const IndexEntry& entry) {
+  if (!entry.word.empty()) return entry.word;
+  return !entry.agrees ? "No verdict" : *entry.agrees ? "Agrees" : "Differs";
+}
 
 std::optional<IndexEntry> index_entry(const std::string& json_text) {
   const Json json = Json::parse(json_text, nullptr, false);
-  // What every report has (docs/report.schema.json).
-  if (!json.is_object() || !member(json, "schema").is_number() ||
-      !member(json, "program").is_array() || !member(json, "title").is_string())
-    return std::nullopt;
+  if (!is_report(json)) return std::nullopt;
   IndexEntry entry;
   entry.title = text_in(json, "title");
   entry.case_file = text_in(member(json, "case"), "file");
@@ -144,10 +199,10 @@ std::optional<IndexEntry> index_entry(const std::string& json_text) {
       const std::string name = text_in(warning, "name");
       entry.warnings.push_back(name.empty() ? text_in(warning, "code") : name);
     }
+  entry.not_valid = text_in(verdict, "not_valid");
   // Where there is a warning, it says so too.
-  if (const std::string where = text_in(verdict, "not_valid");
-      !where.empty() && entry.warnings.empty())
-    entry.warnings.push_back("not valid " + where);
+  if (!entry.not_valid.empty() && entry.warnings.empty())
+    entry.warnings.push_back("not valid " + entry.not_valid);
   entry.word = text_in(verdict, "word");
   const Json& reference = member(verdict, "reference");
   if (const Json& held = member(reference, "agrees");
@@ -164,6 +219,21 @@ std::optional<IndexEntry> index_entry(const std::string& json_text) {
   return entry;
 }
 
+std::string damage_of(const std::string& json_text) {
+  if (json_text.empty()) return "empty";
+  try {
+    const Json json = Json::parse(json_text, nullptr, true, true);  // others write comments too
+    if (is_report(json) || !member(json, "schema").is_number() ||
+        (!json.contains("program") && !json.contains("verdict")))
+      return {};
+    return "a report without its title, or without what the program was";
+  } catch (const Json::parse_error& error) {
+    return error.byte > json_text.size()
+               ? fmt::format("ends after {} bytes within its JSON", json_text.size())
+               : fmt::format("no JSON at byte {}", error.byte);
+  }
+}
+
 std::string picture_of_page(const std::string& html) {
   const std::string before = "<div id=\"picture\" hidden>";
   const auto at = html.find(before);
@@ -176,7 +246,9 @@ std::string picture_of_page(const std::string& html) {
 
 void sort_by_worst(std::vector<IndexEntry>& entries) {
   const auto rank = [](const IndexEntry& e) {
-    return e.agrees && !*e.agrees ? 0 : !e.warnings.empty() ? 1 : e.agrees ? 2 : 3;
+    if (e.agrees && !*e.agrees) return 0;
+    if (!e.not_valid.empty()) return 1;
+    return !e.warnings.empty() ? 2 : e.agrees ? 3 : 4;
   };
   std::stable_sort(entries.begin(), entries.end(), [&](const IndexEntry& a, const IndexEntry& b) {
     if (rank(a) != rank(b)) return rank(a) < rank(b);
@@ -186,32 +258,41 @@ void sort_by_worst(std::vector<IndexEntry>& entries) {
   });
 }
 
-std::string index_headline(const std::vector<IndexEntry>& entries) {
-  if (entries.empty()) return "No report.";
+std::string index_headline(const std::vector<IndexEntry>& entries,
+                           const std::vector<UnreadFile>& unread) {
+  const std::string missing = unread.empty() ? "" : unread_text(unread);
+  if (entries.empty()) return missing.empty() ? "No report." : "No report; " + missing + ".";
   const IndexEntry& worst = entries.front();
   const std::string name =
       worst.title + " (" + (worst.page.empty() ? worst.json : worst.page) + ")";
+  std::string text = counts_of(entries) + (missing.empty() ? ". " : "; " + missing + ". ");
   if (worst.agrees && !*worst.agrees)
-    return fmt::format("{}. Worst: {}: {}", counts_of(entries), name, worst.headline);
+    return text + fmt::format("Worst: {}: {}", name, worst.headline);
+  text += missing.empty() ? "None differs" : "Of those that were read, none differs";
+  if (!worst.not_valid.empty())
+    return text + fmt::format("; first that is not valid throughout: {}: not valid {}.", name,
+                              worst.not_valid);
   if (!worst.warnings.empty())
-    return fmt::format("{}. None differs; first with warnings: {}: {}.", counts_of(entries), name,
-                       warnings_of(worst));
-  return fmt::format("{}. None differs, none has warnings.", counts_of(entries));
+    return text + fmt::format("; first with warnings: {}: {}.", name, warnings_of(worst));
+  return text + ", none has warnings.";
 }
 
 std::string index_page(const std::string& title, const std::vector<IndexEntry>& entries,
-                       const std::vector<std::string>& skipped) {
+                       const std::vector<std::string>& skipped,
+                       const std::vector<UnreadFile>& unread) {
   std::string rows;
   for (const IndexEntry& entry : entries) rows += row_of(entry);
   return filled_template("index.html", {{"@CSS@", page_parts().at("report.css")},
-                                        {"@COUNTS@", markup_of(index_headline(entries))},
+                                        {"@COUNTS@", markup_of(index_headline(entries, unread))},
+                                        {"@UNREAD@", unread_list(unread)},
                                         {"@SKIPPED@", skipped_text(skipped)},
                                         {"@ROWS@", rows},
                                         {"@TITLE@", markup_of(title)},
                                         {"@TITLE@", markup_of(title)}});
 }
 
-std::string index_json(const std::vector<IndexEntry>& entries) {
+std::string index_json(const std::vector<IndexEntry>& entries,
+                       const std::vector<UnreadFile>& unread) {
   Json list = Json::array();
   for (const IndexEntry& e : entries)
     list.push_back({{"json", e.json},
@@ -223,12 +304,18 @@ std::string index_json(const std::vector<IndexEntry>& entries) {
                     {"version", e.version},
                     {"agrees", e.agrees ? Json(*e.agrees) : Json()},
                     {"warnings", e.warnings},
-                    {"word", word_of(e)},
+                    {"word", index_word(e)},
+                    {"not_valid", e.not_valid},
                     {"headline", e.headline},
                     {"worst_channel", e.worst_channel},
                     {"worst_over_peak", e.worst_over_peak ? Json(*e.worst_over_peak) : Json()}});
-  const Json whole = {
-      {"schema", 1}, {"headline", index_headline(entries)}, {"reports", std::move(list)}};
+  Json missing = Json::array();
+  for (const UnreadFile& file : unread)
+    missing.push_back({{"path", file.path}, {"reason", file.reason}});
+  const Json whole = {{"schema", 1},
+                      {"headline", index_headline(entries, unread)},
+                      {"reports", std::move(list)},
+                      {"unread", std::move(missing)}};
   return whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -6,6 +6,7 @@ usage: index_command_test.py BENTAXIS REPO_ROOT [options of unittest]
 
 import html.parser
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -61,7 +62,7 @@ class Index(unittest.TestCase):
                    cls.folder / "deep/regress.json")
         assert done.returncode == 0, done.stderr
         (cls.folder / "no_report.json").write_text('{"schema": 1}')
-        (cls.folder / "broken.json").write_text('{"schema"')
+        (cls.folder / "settings.json").write_text('{"other": 1} // of an editor')
 
     @classmethod
     def tearDownClass(cls):
@@ -107,11 +108,101 @@ class Index(unittest.TestCase):
         empty = self.folder / "empty"
         empty.mkdir()
         for where, words in ((self.folder / "missing", "no such folder"), (empty, "no report below it"),
-                             (self.folder / "broken.json", "no such folder")):
+                             (self.folder / "no_report.json", "no such folder")):
             done = run("index", where)
             self.assertEqual((done.returncode, done.stdout), (2, ""))
             self.assertRegex(done.stderr, f"^bentaxis: {where}: {words}[^\n]*\n$")
         self.assertEqual(list(empty.iterdir()), [])
+
+    def report(self, verdict, **more):
+        return json.dumps({"schema": 1, "program": [], "title": "a pump", "verdict": verdict, **more})
+
+    def folder_of(self, **texts):
+        """A folder of its own with these reports."""
+        place = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, place)
+        place.chmod(0o755)
+        for name, text in texts.items():
+            (place / name / "x.json").parent.mkdir()
+            (place / name / "report.json").write_text(text)
+        return place
+
+    def assert_not_read(self, done, place, *names):
+        """The console, the JSON, the page and the status say of what nothing can be said."""
+        said = json.loads((place / "index.json").read_text())
+        self.assertEqual([one["path"] for one in said["unread"]], list(names))
+        self.assertEqual(done.returncode, 2, done.stdout)
+        self.assertRegex(done.stderr, f"^bentaxis: [^\n]*{names[0]}[^\n]*\n$")
+        headline = done.stdout.splitlines()[0]
+        self.assertEqual(headline, said["headline"])
+        self.assertIn(f"{len(names)} could not be read, so nothing can be said of", headline)
+        self.assertIn("Of those that were read, none differs", headline)
+        page = (place / "index.html").read_text()
+        for name in names:
+            self.assertIn(name, headline)
+            self.assertRegex(done.stdout, f"(?m)^not read +{name}: ")
+            self.assertIn(f"<li><code>{name}</code>", page)
+
+    def test_a_damaged_report_is_not_passed_over(self):
+        whole = (self.folder / "deep/er/differs/report.json").read_text()
+        place = self.folder_of(good=self.report({"agrees": True, "headline": "fine"}), cut=whole[:5000], empty="", headless=json.dumps(
+            {"schema": 1, "verdict": {"agrees": False}}), other='{"name": "no report"}')
+        done = run("index", place)
+        self.assert_not_read(done, place, "cut/report.json", "empty/report.json", "headless/report.json")
+        self.assertIn("ends after 5000 bytes", done.stdout)
+        self.assertIn("1 JSON files are no report", done.stdout)
+        # None at all: one line, and nothing is written.
+        place = self.folder_of(cut=whole[:5000])
+        done = run("index", place)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertRegex(done.stderr, f"^bentaxis: {place}: no report below it can be read: cut/report.json: ends after 5000 bytes[^\n]*\n$")
+        self.assertFalse((place / "index.html").exists())
+
+    def test_what_must_not_be_read_is_not_passed_over(self):
+        place = self.folder_of(good=self.report({"agrees": True, "headline": "fine"}), locked=self.report({"agrees": False}), shut=self.report(
+            {"agrees": False}))
+        out = self.folder_of()
+        out.chmod(0o777)
+        (place / "locked").chmod(0o700)
+        (place / "shut/report.json").chmod(0o600)
+        self.addCleanup((place / "locked").chmod, 0o755)
+        as_others = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
+        if not as_others:
+            (place / "locked").chmod(0)
+            (place / "shut/report.json").chmod(0)
+
+        def run_as_others(folder):
+            return subprocess.run([*as_others, str(PROGRAM), "index", str(folder), "--out", str(out)], capture_output=True, text=True, timeout=120)
+
+        done = run_as_others(place)
+        seen = "../" + place.name
+        self.assert_not_read(done, out, f"{seen}/locked", f"{seen}/shut/report.json")
+        self.assertRegex(done.stdout, r"not read +\S*locked: cannot be read: Permission denied\n")
+        self.assertRegex(done.stdout, r"not read +\S*shut/report.json: cannot be read: [^\n]*no permission\n")
+        done = run_as_others(place / "locked")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("Permission denied", done.stderr)
+
+    def test_where_results_are_not_valid(self):
+        """Also beside warnings, and counted in the headline."""
+        place = self.folder_of(
+            valid=self.report({"agrees": True, "headline": "fine"}, warnings=[{"name": "timing", "text": ""}]),
+            invalid=self.report({"agrees": True, "headline": "fine", "not_valid": "over 100 % of the turn"}, warnings=[{"name": "film", "text": ""}]))
+        done = run("index", place)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"^2 reports, 2 with warnings; 1 of them not valid throughout\. None differs; first that is not valid "
+                         r"throughout: a pump \(invalid/report\.json\): not valid over 100 % of the turn\.\n")
+        self.assertRegex(done.stdout, r"\nagrees +invalid/report\.json: fine; not valid over 100 % of the turn \(warnings: 1\)\n")
+        self.assertEqual([word for _, word in Page((place / "index.html").read_text()).rows], ["Agrees; not valid over 100 % of the turn", "Agrees"])
+        self.assertEqual([entry["not_valid"] for entry in json.loads((place / "index.json").read_text())["reports"]], ["over 100 % of the turn", ""])
+
+    def test_no_design_is_no_difference(self):
+        place = self.folder_of(none=self.report({"agrees": False, "word": "No design", "headline": "none satisfies all constraints"}),
+                               differs=self.report({"agrees": False, "headline": "The two models differ."}))
+        done = run("index", place)
+        self.assertRegex(done.stdout, r"^2 reports, 1 differ, 1 no design\. Worst: ")
+        self.assertRegex(done.stdout, r"\nno design +none/report\.json: ")
+        self.assertIn(("none/report.json", "No design"), [tuple(row) for row in Page((place / "index.html").read_text()).rows])
 
 
 if __name__ == "__main__":
