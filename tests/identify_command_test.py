@@ -94,6 +94,40 @@ class IdentifyTest(ProgramTest):
         # The case's bore, 22.5 mm, gives 292.5 Nm; 1 Nm is 0.04 mm.
         self.assertAlmostEqual(float(row["identified"]), 22.5, delta=0.05)
 
+    def test_an_unknown_at_its_bound_is_not_called_undetermined(self):
+        """The data want a bore of 22.5 mm, which the range leaves out: by how much chi-square would fall is the square of the residual."""
+        data = DATA.replace("[20, 25]", "[20, 22.4]")
+        for options in (["--fit-only"], []):
+            out = self.identify(data, *options).out
+            report = json.loads((self.folder / "out" / "report.json").read_text())
+            ends = "pump.bore_diameter_mm ends at the upper bound 22.4 of its range 20 to 22.4"
+            self.assertIn(ends + ": the value that the data want lies beyond it, or the bound is wrong", out)
+            self.assertIn("pump.bore_diameter_mm = 22.4 mm, its upper bound (case: 22.5", out)
+            self.assertIn(ends, report["verdict"]["headline"])
+            self.assertNotIn("do not determine", out)
+            self.assertNotIn("standard deviation", out)
+            self.assertNotRegex(out, r"reactions are known (to|roughly)")
+            self.assertNotIn("most useful further measurement", out)
+            self.assertIn("# " + ends, (self.folder / "out" / "identified.toml").read_text())
+            self.assertIn("Unknown at its bound", [w["name"] for w in report["warnings"]])
+            tables = {run["title"]: [dict(zip(run["table"]["columns"], row)) for row in run["table"]["rows"]] for run in report["runs"]}
+            self.assertEqual([row["ends at"] for row in tables["Unknowns"]], ["its upper bound"])
+            gain = float(re.search(r"fall by about ([\d.]+) beyond it", out).group(1))
+            self.assertAlmostEqual(gain, tables["Data that unknowns are fitted to"][0]["residual"] ** 2, delta=0.02 * gain)
+        self.assertIn("how well reactions are known is not stated", out)
+        # Within its range nothing of it is said.
+        self.assertNotIn("bound", self.identify(DATA, "--fit-only").out.replace("half as wide as the bounds", ""))
+
+    def test_curves_are_counted_with_their_points(self):
+        """As the degrees of freedom are."""
+        self.run_program("run", self.case(), "--set", "operation.samples_per_revolution=60", "--model", "analytic", "--out", "rig")
+        curve = '[[curve]]\nfile = "rig/analytic.csv"\nchannels = ["Td_z1_Nm", "Rb1_x1_N"]\nuncertainty = 1\n'
+        head = DATA[:DATA.index("[[number]]")]
+        out = self.identify(head + curve, "--fit-only").out
+        self.assertIn("119 degrees of freedom", out)
+        self.assertIn("data they are fitted to: 2 curves with 120 points;", out)
+        self.assertIn("data they are fitted to: 4, of which 2 curves with 120 points;", self.identify(DATA + curve, "--fit-only").out)
+
     def test_the_report_says_what_the_files_say(self):
         result = self.identify(DATA)
         report = json.loads((self.folder / "out" / "report.json").read_text())

@@ -78,6 +78,42 @@ double worst_residual(const Identification& result, std::size_t datum) {
   return worst == result.worst.end() ? 0 : worst->residual;
 }
 
+// ---- Unknowns at a bound
+
+const HeldUnknown* held_of(const Identification& result, std::size_t unknown) {
+  const auto at = std::find_if(result.held.begin(), result.held.end(),
+                               [&](const HeldUnknown& h) { return h.unknown == unknown; });
+  return at == result.held.end() ? nullptr : &*at;
+}
+
+// "pump.tilt_deg ends at the upper bound 39 of its range 38 to 39"
+std::string held_text(const DataModel& model, const HeldUnknown& held) {
+  const Unknown& u = model.data().unknowns[held.unknown];
+  return fmt::format("{} ends at the {} bound {:g} of its range {:g} to {:g}", u.name(),
+                     held.high ? "upper" : "lower", held.high ? u.high : u.low, u.low, u.high);
+}
+
+// The same with what follows.
+std::string held_line(const DataModel& model, const HeldUnknown& held) {
+  return fmt::format(
+      "{}: the value that the data want lies beyond it, or the bound is wrong (chi-square would "
+      "fall by about {:.3g} beyond it)",
+      held_text(model, held), held.gain);
+}
+
+std::string held_names(const DataModel& model, const Identification& result) {
+  std::vector<std::string> names;
+  for (const HeldUnknown& held : result.held)
+    names.push_back(model.data().unknowns[held.unknown].name());
+  return report::joined(names);
+}
+
+// What is not known because of them.
+std::string only_within(const DataModel& model, const Identification& result) {
+  return "They hold only if the bound is right at which this ends: " + held_names(model, result) +
+         ".";
+}
+
 // ---- Goodness of fit
 
 constexpr std::size_t kWorstShown = 10, kWorstPrinted = 5;
@@ -296,7 +332,8 @@ Section unknowns_section(const DataModel& model, const Identification& result) {
                            "open at a bound",
                            "2.5 % from",
                            "97.5 % to",
-                           "share of bounds left"};
+                           "share of bounds left",
+                           "ends at"};
   for (std::size_t i = 0; i < model.size(); ++i) {
     const Unknown& u = model.data().unknowns[i];
     const Quantiles q = quantiles_of(result.posterior.unknowns, model.size(), i);
@@ -314,6 +351,8 @@ Section unknowns_section(const DataModel& model, const Identification& result) {
                                                                    : "")});
     }
     row.insert(row.end(), {cell(q.low), cell(q.high), cell((q.high - q.low) / (u.high - u.low))});
+    const HeldUnknown* held = held_of(result, i);
+    row.emplace_back(!held ? "" : held->high ? "its upper bound" : "its lower bound");
     section.table.rows.push_back(std::move(row));
   }
   return section;
@@ -326,6 +365,8 @@ Section determined_section(const DataModel& model, const Identification& result)
       "From the derivatives of the fitted data at the solution. A window that is met has no "
       "derivative there, although it limits the range: profiles and posterior take it into "
       "account.";
+  for (const HeldUnknown& held : result.held)
+    section.facts.emplace_back("", held_line(model, held));
   for (const std::string& line : result.information.words) section.facts.emplace_back("", line);
   section.table.columns = {"direction", "times narrower than the bounds", "mostly along"};
   for (std::size_t d = 0; d < result.information.directions.size(); ++d) {
@@ -442,6 +483,7 @@ Section reactions_section(const DataModel& model, const Identification& result) 
   section.text =
       "Half the width of the 95 % band where it is widest, of the peak of its middle curve, at the "
       "case's own speed and pressure. All other parameters are taken as known.";
+  if (!result.held.empty()) section.facts.emplace_back("", only_within(model, result));
   section.table.columns = {"reaction", "half width, % of peak"};
   for (const ReactionBand& band : result.bands)
     section.table.rows.push_back({layout.channels()[band.column].name, 100 * band.half_width});
@@ -523,17 +565,35 @@ std::vector<report::Figure> figures_of(const DataModel& model, const Identificat
   return figures;
 }
 
+// "3", "2 curves with 360 points", "5, of which 2 curves with 360 points".
+std::string fitted_data_text(const DataModel& model) {
+  std::size_t fitted = 0, curves = 0, points = 0;
+  for (const Datum& datum : model.data().data)
+    if (datum.use == Use::fitted) {
+      ++fitted;
+      if (datum.curve) {
+        ++curves;
+        points += datum.size();
+      }
+    }
+  if (curves == 0) return std::to_string(fitted);
+  const std::string text =
+      fmt::format("{} curve{} with {} points", curves, curves == 1 ? "" : "s", points);
+  return curves == fitted ? text : fmt::format("{}, of which {}", fitted, text);
+}
+
 std::string headline_of(const DataModel& model, const Identification& result) {
-  int fitted = 0, open = 0;
-  for (const Datum& datum : model.data().data) fitted += datum.use == Use::fitted;
+  int open = 0;
   std::string text = fmt::format("{}; unknowns: {}; data they are fitted to: {}",
-                                 fit_text(result.goodness), model.size(), fitted);
+                                 fit_text(result.goodness), model.size(), fitted_data_text(model));
+  for (const HeldUnknown& held : result.held) text += "; " + held_text(model, held);
   if (result.goodness.refuted())
     return result.worst.empty() ? text
                                 : text + "; worst: " + worst_line(model, result, result.worst[0]);
   for (const Direction& direction : result.information.directions) open += direction.strength < 2;
-  text += fmt::format("; {} of {} directions become less than half as wide as the bounds",
-                      static_cast<int>(model.size()) - open, model.size());
+  if (result.held.empty())
+    text += fmt::format("; {} of {} directions become less than half as wide as the bounds",
+                        static_cast<int>(model.size()) - open, model.size());
   if (result.bands.empty()) return text;
   int predicted = 0, missed = 0;
   for (std::size_t i = 0; i < model.data().data.size(); ++i)
@@ -545,6 +605,8 @@ std::string headline_of(const DataModel& model, const Identification& result) {
   if (missed > 0)
     text +=
         fmt::format("; {} of {} predicted data are outside their 95 % bands", missed, predicted);
+  if (!result.held.empty())
+    return text + "; how well reactions are known is not stated: bands hold only within that bound";
   const auto [best, worst] = std::minmax_element(
       result.bands.begin(), result.bands.end(),
       [](const ReactionBand& a, const ReactionBand& b) { return a.half_width < b.half_width; });
@@ -561,9 +623,18 @@ std::vector<std::string> answers_of(const DataModel& model, const Identification
   for (std::size_t i = 0; i < model.size(); ++i) {
     const Unknown& u = model.data().unknowns[i];
     const std::string unit = u.variable.unit().empty() ? "" : " " + u.variable.unit();
-    std::string text = fmt::format("{} = {:.6g}{} (case: {:.6g}", u.name(), result.fit.x[i], unit,
+    const HeldUnknown* held = held_of(result, i);
+    std::string text = fmt::format("{} = {:.6g}{}{} (case: {:.6g}", u.name(), result.fit.x[i], unit,
+                                   !held        ? ""
+                                   : held->high ? ", its upper bound"
+                                                : ", its lower bound",
                                    u.variable.value(model.base()));
-    if (result.goodness.refuted())
+    if (held && result.profiles.empty()) {
+      // Its standard deviation would be of the bounds.
+    } else if (held)
+      text += fmt::format("; 95 % within its range: {:.5g} to {:.5g}", result.profiles[i].low,
+                          result.profiles[i].high);
+    else if (result.goodness.refuted())
       text += fmt::format("; standard deviation {:.3g}, widened", result.information.deviation[i]);
     else if (!result.profiles.empty())
       text +=
@@ -574,6 +645,8 @@ std::vector<std::string> answers_of(const DataModel& model, const Identification
       text += fmt::format("; standard deviation {:.3g}", result.information.deviation[i]);
     answers.push_back(text + ").");
   }
+  for (const HeldUnknown& held : result.held)
+    answers.push_back(report::sentence(held_line(model, held)));
   for (const std::string& line : result.information.words)
     answers.push_back(report::sentence(line));
   if (result.goodness.refuted()) {
@@ -581,7 +654,7 @@ std::vector<std::string> answers_of(const DataModel& model, const Identification
       answers.push_back("Largest residual: " + worst_line(model, result, result.worst[0]) + ".");
     answers.push_back(report::sentence(further_text(model, result)));
   }
-  if (!result.candidates.empty())
+  if (!result.candidates.empty() && result.held.empty())
     answers.push_back(
         fmt::format("The most useful further measurement is {}: it would narrow the "
                     "bands of the reactions by {:.3g} % on average.",
@@ -632,6 +705,8 @@ report::Document identify_document(const DataModel& model, const Identification&
          fmt::format("R-hat {:.3g}, above {:g}: the chains have not converged, and the bands are "
                      "rough estimates only. More --steps, fewer unknowns or narrower bounds help",
                      *rhat, kSettled)});
+  for (const HeldUnknown& held : result.held)
+    warnings.push_back({"Unknown at its bound", held_line(model, held)});
   if (!warnings.empty()) report::append(document.warnings, std::move(warnings));
   document.runs = {goodness_section(result), worst_section(model, result)};
   if (result.goodness.refuted()) document.runs->push_back(further_section(model, result));
@@ -674,6 +749,7 @@ std::string identified_case_text(const DataModel& model, const Identification& r
     head +=
         "# The data refute this pump: its values fit best, but they do not describe the pump that "
         "was measured.\n";
+  for (const HeldUnknown& held : result.held) head += "# " + held_text(model, held) + ".\n";
   return head + case_text(identified);
 }
 

@@ -487,7 +487,10 @@ Identification identify(const DataModel& model, const IdentifyOptions& options,
   std::vector<double> jacobian = result.fit.jacobian;
   if (refuted)
     for (double& slope : jacobian) slope /= result.goodness.birge_ratio();
-  result.information = information_of(model, result.fit.x, jacobian);
+  result.held = held_unknowns(model, result.fit);
+  std::vector<std::size_t> at_bound;
+  for (const HeldUnknown& held : result.held) at_bound.push_back(held.unknown);
+  result.information = information_of(model, result.fit.x, jacobian, at_bound);
   if (refuted)
     result.further =
         further_unknowns(model, result.fit, options.threads, progress_of("further unknowns"));

@@ -53,13 +53,19 @@ std::vector<Place> places_of(const DataModel& model) {
 
 bool is_window(const Datum& datum) { return !datum.curve && !datum.value; }
 
+// Half the derivative of chi-square with respect to an unknown.
+double slope_along(const DataModel& model, const LeastSquaresFit& fit, std::size_t unknown) {
+  double slope = 0;
+  for (std::size_t r = 0; r < fit.residuals.size(); ++r)
+    slope += fit.jacobian[r * model.size() + unknown] * fit.residuals[r];
+  return slope;
+}
+
 // Whether a bound holds an unknown back from where its residuals would take it.
 bool is_held(const DataModel& model, const LeastSquaresFit& fit, std::size_t unknown) {
   const Unknown& u = model.data().unknowns[unknown];
   const double near = kAtBound * (u.high - u.low);
-  double slope = 0;
-  for (std::size_t r = 0; r < fit.residuals.size(); ++r)
-    slope += fit.jacobian[r * model.size() + unknown] * fit.residuals[r];
+  const double slope = slope_along(model, fit, unknown);
   return (fit.x[unknown] <= u.low + near && slope >= 0) ||
          (fit.x[unknown] >= u.high - near && slope <= 0);
 }
@@ -198,6 +204,22 @@ std::vector<Found> found_by(int threads, std::size_t count, const Job& job,
 }
 
 }  // namespace
+
+std::vector<HeldUnknown> held_unknowns(const DataModel& model, const LeastSquaresFit& fit) {
+  // Less is what the weak restraint to the case's values does.
+  constexpr double kSmallestGain = 0.01;
+  std::vector<HeldUnknown> held;
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    if (!is_held(model, fit, i)) continue;
+    const double slope = slope_along(model, fit, i);
+    double curvature = 0;
+    for (std::size_t r = 0; r < fit.residuals.size(); ++r)
+      curvature += std::pow(fit.jacobian[r * model.size() + i], 2);
+    if (const double gain = curvature > 0 ? slope * slope / curvature : 0; gain > kSmallestGain)
+      held.push_back({i, slope < 0, gain});
+  }
+  return held;
+}
 
 double chi_square_p_value(double chi_square, std::size_t degrees_of_freedom) {
   if (!std::isfinite(chi_square)) return 0;

@@ -48,8 +48,12 @@ std::string pair_words(const Unknown& a, const Unknown& b, double first, double 
 class Words {
  public:
   Words(const DataModel& model, std::span<const double> x, const std::vector<double>& spread,
-        const Matrix& open)
-      : unknowns_(model.data().unknowns), x_(x), spread_(spread), open_(open) {}
+        const Matrix& open, const std::vector<std::size_t>& at_bound)
+      : unknowns_(model.data().unknowns), x_(x), spread_(spread), open_(open) {
+    std::vector<Index> held;
+    for (const std::size_t i : at_bound) held.push_back(static_cast<Index>(i));
+    open_ = without(open_, held);
+  }
 
   std::vector<std::string> say() {
     const auto n = static_cast<Index>(unknowns_.size());
@@ -129,7 +133,8 @@ class Words {
 }  // namespace
 
 Information information_of(const DataModel& model, std::span<const double> x,
-                           std::span<const double> jacobian) {
+                           std::span<const double> jacobian,
+                           const std::vector<std::size_t>& at_bound) {
   const std::size_t n = model.size();
   Information information;
   for (const Unknown& u : model.data().unknowns) information.spread.push_back(width_of(u));
@@ -153,7 +158,7 @@ Information information_of(const DataModel& model, std::span<const double> x,
   for (std::size_t i = 0; i < n; ++i)
     information.deviation.push_back(information.spread[i] *
                                     std::sqrt(after(static_cast<Index>(i), static_cast<Index>(i))));
-  information.words = Words(model, x, information.spread, open).say();
+  information.words = Words(model, x, information.spread, open, at_bound).say();
   return information;
 }
 

@@ -142,8 +142,19 @@ struct Information {
   std::vector<std::string> words;     ///< what is determined only together with what, or not at all
 };
 /// @param jacobian  of problem() at x
+/// @param at_bound  unknowns that a bound holds: no words say that the data leave them open
 Information information_of(const DataModel& model, std::span<const double> x,
-                           std::span<const double> jacobian);
+                           std::span<const double> jacobian,
+                           const std::vector<std::size_t>& at_bound = {});
+
+/// An unknown that ends at a bound, and that the data would take beyond it.
+struct HeldUnknown {
+  std::size_t unknown = 0;
+  bool high = false;  ///< the upper bound
+  double gain = 0;    ///< by which chi-square would fall beyond it if the model were linear
+};
+/// Those that chi-square tells from a value inside: by more than 0.01.
+std::vector<HeldUnknown> held_unknowns(const DataModel& model, const LeastSquaresFit& fit);
 
 /// The p-value below which a fit is refuted: of a right model with right uncertainties one fit in
 /// a thousand is refuted by chance.
@@ -274,6 +285,8 @@ struct Identification {
   std::vector<ReactionBand> bands;    ///< of the reactions of piston 1, block, shaft and gear
   std::vector<Candidate> candidates;  ///< the most useful first
   std::vector<LeftOut> left_out;
+  /// Where there are any, profiles, posterior and bands hold only if these bounds are right.
+  std::vector<HeldUnknown> held;
 };
 
 /// A fit that the data refute (GoodnessOfFit::refuted()) is a result, no error.
