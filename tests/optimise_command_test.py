@@ -84,6 +84,46 @@ class Optimise(unittest.TestCase):
                 self.assertTrue(math.isclose(float(value), shown, rel_tol=1e-12), (name, value, shown))
         self.assertFalse((self.out / "sweep.parts").exists())
 
+    def test_chosen_designs_say_whether_they_are_valid(self):
+        """As show says of the chosen case. A small bottom area lets the block lift off."""
+        search = ["--vary", "block.bottom_area_mm2=50:250", "--maximise", "max:Fh_z2", "--population", "16", "--generations", "6"]
+        for options, valid in (([], False), (["--subject-to", "validity.film.share <= 0", "--subject-to", "validity.point.share <= 0"], True)):
+            done = self.run_program(*search, *options)
+            verdict = json.loads((self.out / "report.json").read_text())["verdict"]
+            table = next(s for s in json.loads((self.out / "report.json").read_text())["runs"] if s["title"] == "Chosen designs")["table"]
+            subprocess.run([PROGRAM, "show", self.out / "chosen_1.toml", "--out", self.folder / "alone"], check=True, capture_output=True,
+                           timeout=SECONDS)
+            alone = json.loads((self.folder / "alone/report.json").read_text())["verdict"]
+            self.assertEqual(alone.get("not_valid", "") == "", valid)
+            self.assertTrue(done.stdout.splitlines()[0].endswith(
+                "; the chosen design is " + ("" if valid else "not ") + "valid over the whole turn"), done.stdout)
+            said = "valid over the whole turn" if valid else "not valid " + alone["not_valid"]
+            self.assertEqual(table["rows"][1][table["columns"].index("validity")], said)
+            self.assertEqual(verdict.get("not_valid", ""), "" if valid else "for 1 of 1 chosen designs")
+            head = (self.out / "chosen_1.toml").read_text()
+            self.assertEqual("# Not valid over" in head, not valid)
+            self.assertEqual('To have valid designs only: --subject-to "validity.' in done.stdout, not valid)
+            if not valid:
+                self.assertIn(f"; {said}.\n", done.stdout)
+                for limit in (a for a in alone["answers"] if a.startswith("Not valid")):
+                    self.assertIn(limit, done.stdout)
+
+    def test_searches_that_disagree_say_so(self):
+        """0 % of the front alone: nothing that a front could be trusted for. Of one objective the best values are compared."""
+        many = [item for k in range(1, 8) for item in ("--vary", ["pump.tilt_deg=25:42", "pump.bore_diameter_mm=20:26",
+                "bearings.tapered_z_mm=-60:-30", "bearings.cylindrical_z_mm=-160:-100", "block.bottom_area_mm2=150:350",
+                "piston.mass_kg=0.05:0.2", "operation.speed_rpm=500:2500"][k - 1])]
+        # One design of sixteen has so much displacement: one of the searches has none.
+        done = self.run_program(*many, "--minimise", "peak:Rb1", "--maximise", "displacement_cm3", "--subject-to", "displacement_cm3 >= 81",
+                                "--population", "8", "--generations", "0", "--no-refinement", "--comparison", "no")
+        self.assertIn("How sure: the searches disagree: one of 2 finds nothing of the front alone, so the front is not settled: more ", done.stdout)
+        done = self.run_program(*many, "--minimise", "peak:Rb1", "--population", "8", "--generations", "0", "--no-refinement", "--comparison", "no")
+        self.assertRegex(done.stdout, r"How sure: the best values of the 2 searches differ by [\d.e-]+ %, so the best design is not settled: more ")
+        rows = next(s for s in json.loads((self.out / "report.json").read_text())["runs"] if s["title"] == "How sure this is")["table"]["rows"]
+        everything = [float(row["peak:Rb1"]) for row in rows_of(self.out / "evaluations.csv")]
+        for search, part in ((0, everything[:8]), (1, everything[8:16])):
+            self.assertEqual(rows[search][2], f"best: {min(part):.5g} N")
+
     def test_no_design_is_a_clear_no(self):
         done = self.run_program(*FRONT, "--subject-to", "displacement_cm3 >= 900", status=NONE_FOUND)
         self.assertTrue(done.stdout.startswith("none of "), done.stdout)

@@ -160,6 +160,37 @@ class SweepTest(ProgramTest):
         self.run_program(*self.command("--sampling", "lhs", "--samples", 256, "--seed", 4, out="other", **vary))
         self.assertNotEqual(self.results("lhs")["sweep.csv"], self.results("other")["sweep.csv"])
 
+    def test_what_no_printed_digit_tells_apart_is_the_same(self):
+        out = self.run_program(*self.command("--output", "mean:Td", **{"pump.tilt_deg": "40:40.000001:#2"})).out
+        self.assertRegex(out, r"\nmean:Td is [\d.]+ Nm in every design, to the digits that are printed\.\n")
+        self.assertNotIn("lowest", out)
+
+    def test_best_designs_say_whether_they_are_valid(self):
+        """As show says of the design by itself. In bap63_rated a bottom area of 50 mm2 lets the block lift off."""
+        vary = {"block.bottom_area_mm2": "50,250"}
+        for options, design, valid in ((("--minimise", "max:Fh_z2"), 1, True), (("--maximise", "max:Fh_z2"), 0, False)):
+            result = self.run_program(*self.command("--output", "max:Fh_z2", *options, **vary))
+            report = json.loads((self.folder / "out" / "report.json").read_text())
+            headline, answers = report["verdict"]["headline"], report["verdict"]["answers"]
+            area = vary["block.bottom_area_mm2"].split(",")[design]
+            self.run_program("show", program.REPO / "cases" / "bap63_rated.toml", "--set", "operation.samples_per_revolution=36", "--set",
+                             f"block.bottom_area_mm2={area}", "--out", "alone")
+            alone = json.loads((self.folder / "alone" / "report.json").read_text())["verdict"]
+            self.assertEqual(alone.get("not_valid", "") == "", valid)
+            self.assertTrue(headline.endswith("the best design is valid over the whole turn" if valid
+                                              else "the best design is not valid over the whole turn"), headline)
+            self.assertIn(headline, result.out)
+            table = next(run for run in report["runs"] if run["title"] == "Best designs")
+            said = "valid over the whole turn" if valid else f"not valid {alone['not_valid']}"
+            self.assertIn({"name": f"design {design}", "value": said}, [dict(zip(("name", "value"), fact)) if isinstance(fact, list) else fact
+                                                                       for fact in table["facts"]])
+            self.assertEqual(report["verdict"].get("not_valid", ""), "" if valid else "for 1 of 1 best designs")
+            if not valid:
+                self.assertTrue(answers[0].endswith(f"; not valid {alone['not_valid']}."), answers)
+                for limit in (a for a in alone["answers"] if a.startswith("Not valid")):
+                    self.assertIn(f"Design {design}: {limit}", answers)
+                self.assertIn("--output validity.film.share", answers[-1])
+
     def test_a_study_file_and_options_on_top(self):
         (self.folder / "study.toml").write_text(
             'sampling = "grid"\noutput = ["mean:Td"]\nminimise = ["peak:Rb1"]\n\n'

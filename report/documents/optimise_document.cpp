@@ -110,16 +110,58 @@ std::optional<double> largest_improvement(const Optimisation& found) {
   return largest;
 }
 
-// Best value of an objective among the designs that keep all constraints.
-double best_value(const Optimisation& found, std::size_t output) {
+// Best value of an objective among the designs that keep all constraints, from one up to another.
+double best_value(const Optimisation& found, std::size_t output, std::size_t from, std::size_t to) {
   double best = NAN;
   const int direction = found.plan.designs.direction[output];
-  for (std::size_t i = 0; i < found.evaluated(); ++i) {
+  for (std::size_t i = from; i < to; ++i) {
     if (found.violations[i] > 0) continue;
     const double value = measured(found, i, output);
     if (!(direction * (value - best) <= 0)) best = value;
   }
   return best;
+}
+
+// The same of one search, of the only objective.
+double best_of_search(const Optimisation& found, std::size_t search) {
+  const auto& counts = found.search.evaluations;
+  std::size_t from = 0;
+  for (std::size_t i = 0; i < search; ++i) from += counts[i];
+  const std::size_t output = objectives(found).front();
+  return best_value(found, output, from, from + counts[search]);
+}
+
+// How far the searches agree: of several objectives in the front, of one in its best value.
+std::string searches_text(const Optimisation& found) {
+  constexpr double kDisagree = 0.5;     // of the front
+  constexpr double kDisagreeBy = 0.01;  // of the best value
+  const std::size_t count = found.shares_of_front.size();
+  if (count < 2) return "";
+  const char* hint = "more --generations or a larger --population";
+  if (objectives(found).size() == 1) {
+    double low = INFINITY, high = -INFINITY;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double best = best_of_search(found, i);
+      if (!is_computed(best))
+        return fmt::format("search {} of {} finds no design that satisfies all constraints: {}",
+                           i + 1, count, hint);
+      low = std::min(low, best);
+      high = std::max(high, best);
+    }
+    const double apart = improvement(high, low);
+    return fmt::format(
+        "the best values of the {} searches differ by {:.2g} %{}", count, 100 * apart,
+        apart > kDisagreeBy ? fmt::format(", so the best design is not settled: {}", hint) : "");
+  }
+  const double least =
+      *std::min_element(found.shares_of_front.begin(), found.shares_of_front.end());
+  if (least >= kDisagree)
+    return fmt::format("each of {} searches finds at least {:.3g} % of the front alone", count,
+                       100 * least);
+  return fmt::format(
+      "the searches disagree: one of {} finds {} of the front alone, so the front is not settled: "
+      "{}",
+      count, least < 5e-4 ? std::string("nothing") : fmt::format("{:.2g} %", 100 * least), hint);
 }
 
 // Random and grid search at as many evaluations, by the same evaluator.
@@ -144,7 +186,8 @@ report::Section comparison_section(const Optimisation& found) {
   };
   std::vector<report::Cell> own = {"optimise", static_cast<long>(found.evaluated()),
                                    static_cast<long>(found.feasible())};
-  for (const std::size_t k : sought) own.push_back(number(best_value(found, k)));
+  for (const std::size_t k : sought)
+    own.push_back(number(best_value(found, k, 0, found.evaluated())));
   own.push_back(found.shares_of_front.empty() ? report::Cell() : report::Cell(100.0));
   own.emplace_back(found.evaluation_seconds);
   section.table.rows.push_back(std::move(own));
@@ -191,11 +234,13 @@ report::Section chosen_section(const Optimisation& found) {
   for (const Output& o : plan.outputs)
     section.table.columns.push_back(o.name + (o.unit.empty() ? "" : ", " + o.unit));
   section.table.columns.emplace_back("at its limit");
+  section.table.columns.emplace_back("validity");
   std::vector<report::Cell> own = {"the case", "", ""};
   for (const Varied& varied : plan.varied)
     own.emplace_back(value_text(varied.variable, varied.variable.value(found.designs.base)));
   for (const double value : found.own.values) own.emplace_back(value);
   own.emplace_back(found.own.reason);
+  own.emplace_back("");
   section.table.rows.push_back(std::move(own));
   for (std::size_t i = 0; i < found.chosen.size(); ++i) {
     const auto& [why, design] = found.chosen[i];
@@ -207,6 +252,9 @@ report::Section chosen_section(const Optimisation& found) {
     for (std::size_t k = 0; k < plan.outputs.size(); ++k)
       row.emplace_back(measured(found, design, k));
     row.emplace_back(fmt::format("{}", fmt::join(bindings(found, design), "; ")));
+    row.emplace_back(i >= found.validity.size()  ? ""
+                     : found.validity[i].valid() ? "valid over the whole turn"
+                                                 : found.validity[i].text());
     section.table.rows.push_back(std::move(row));
   }
   return section;
@@ -234,7 +282,10 @@ report::Section sureness_section(const Optimisation& found) {
   for (std::size_t i = 0; i < options.restarts; ++i)
     section.table.rows.push_back(
         {fmt::format("search {}", i + 1), static_cast<long>(found.search.evaluations[i]),
-         i < found.shares_of_front.size()
+         objectives(found).size() == 1 && is_computed(best_of_search(found, i))
+             ? "best: " + with_unit(best_of_search(found, i),
+                                    found.plan.designs.outputs[objectives(found).front()])
+         : i < found.shares_of_front.size()
              ? fmt::format("{:.4g} % of the volume of the front", 100 * found.shares_of_front[i])
          : found.chosen.empty() ? "no feasible design"
                                 : ""});
@@ -260,8 +311,9 @@ report::Section sureness_section(const Optimisation& found) {
 std::string headline(const Optimisation& found) {
   if (found.chosen.empty())
     return fmt::format("none of {} designs satisfies all constraints", found.evaluated());
-  return fmt::format("{} designs evaluated, {} satisfy all constraints", found.evaluated(),
-                     found.feasible());
+  return fmt::format("{} designs evaluated, {} satisfy all constraints{}{}", found.evaluated(),
+                     found.feasible(), found.validity.empty() ? "" : "; ",
+                     found.validity.empty() ? "" : validity_text(found.validity, "chosen"));
 }
 
 std::vector<std::string> optimise_answers(const Optimisation& found) {
@@ -297,18 +349,15 @@ std::vector<std::string> optimise_answers(const Optimisation& found) {
                 against_case(found, design, k);
     const auto limits = bindings(found, design);
     answers.push_back(fmt::format(
-        "{} (chosen_{}.toml): {}; with {}{}.", why, i + 1, values, view.text(design),
-        limits.empty() ? "" : fmt::format("; at its limit: {}", fmt::join(limits, ", "))));
+        "{} (chosen_{}.toml): {}; with {}{}{}.", why, i + 1, values, view.text(design),
+        limits.empty() ? "" : fmt::format("; at its limit: {}", fmt::join(limits, ", ")),
+        i < found.validity.size() && !found.validity[i].valid() ? "; " + found.validity[i].text()
+                                                                : ""));
   }
+  append_limits(answers, found.validity, "--subject-to");
   if (!found.own.reason.empty())
     answers.push_back("The case itself is not a feasible design: " + found.own.reason + ".");
-  std::string sure;
-  if (found.shares_of_front.size() > 1) {
-    const double least =
-        *std::min_element(found.shares_of_front.begin(), found.shares_of_front.end());
-    sure = fmt::format("each of {} searches finds at least {:.3g} % of the front alone",
-                       found.shares_of_front.size(), 100 * least);
-  }
+  std::string sure = searches_text(found);
   if (const auto most = largest_improvement(found))
     sure += fmt::format("{}gradients improve the best value of an objective by {:.2g} % at most",
                         sure.empty() ? "" : ", and ", 100 * *most);
@@ -330,6 +379,11 @@ std::vector<std::pair<std::string, std::string>> chosen_cases(const Optimisation
                           against_case(found, design, k));
     for (const Constraint& c : found.plan.constraints)
       head += "# Keeps " + found.plan.text(c) + ".\n";
+    if (i < found.validity.size()) {
+      const DesignValidity& validity = found.validity[i];
+      for (const std::string& limit : validity.limits) head += "# " + limit + "\n";
+      if (!validity.reason.empty()) head += "# " + validity.text() + "\n";
+    }
     files.emplace_back(fmt::format("chosen_{}.toml", i + 1), head + case_text(chosen));
   }
   return files;
@@ -347,6 +401,7 @@ report::Document optimise_document(const Optimisation& found, const report::Line
     document.verdict->word = "No design";
   }
   document.verdict->answers = optimise_answers(found);
+  document.verdict->not_valid = not_valid_designs(found.validity, "chosen");
   document.meaning =
       "Designs by one model, the best that a search found. Nothing was compared: run compare on a "
       "chosen design before it is built.";

@@ -282,6 +282,67 @@ Section differing_section(const SweepResult& result) {
 
 }  // namespace
 
+namespace {
+
+struct ValidityCounts {
+  std::size_t wrong = 0, unknown = 0;
+};
+
+ValidityCounts counts_of(const std::vector<DesignValidity>& designs) {
+  ValidityCounts counts;
+  for (const DesignValidity& v : designs) {
+    counts.wrong += !v.limits.empty();
+    counts.unknown += !v.reason.empty();
+  }
+  return counts;
+}
+
+}  // namespace
+
+std::string validity_text(const std::vector<DesignValidity>& designs, const std::string& which) {
+  const ValidityCounts counts = counts_of(designs);
+  const auto of_all = [&](std::size_t count) {
+    return designs.size() == 1 ? fmt::format("the {} design is", which)
+                               : fmt::format("{} of {} {} designs {}", count, designs.size(), which,
+                                             count == 1 ? "is" : "are");
+  };
+  std::string text;
+  if (counts.wrong > 0) text = of_all(counts.wrong) + " not valid over the whole turn";
+  if (counts.unknown > 0)
+    text += (text.empty() ? "" : ", ") + of_all(counts.unknown) + " not checked for validity";
+  return text.empty() ? of_all(designs.size()) + " valid over the whole turn" : text;
+}
+
+std::string not_valid_designs(const std::vector<DesignValidity>& designs,
+                              const std::string& which) {
+  const std::size_t wrong = counts_of(designs).wrong;
+  return wrong == 0 ? "" : fmt::format("for {} of {} {} designs", wrong, designs.size(), which);
+}
+
+void append_limits(std::vector<std::string>& answers, const std::vector<DesignValidity>& designs,
+                   const std::string& option, std::size_t every) {
+  std::vector<std::string> keys;
+  for (const DesignValidity& v : designs)
+    for (const std::string& key : v.keys)
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+  if (keys.empty()) return;
+  std::string text;
+  for (const std::string& key : keys) {
+    text += text.empty() ? "" : ", ";
+    text += option == "--subject-to" ? fmt::format("--subject-to \"validity.{}.share <= 0\"", key)
+                                     : fmt::format("--output validity.{}.share", key);
+  }
+  // What does not hold, of the design that is worst.
+  const auto worst = std::max_element(
+      designs.begin(), designs.end(),
+      [](const DesignValidity& a, const DesignValidity& b) { return a.share < b.share; });
+  for (const std::string& limit : worst->limits)
+    answers.push_back(fmt::format("Design {}: {}", worst->design * every, limit));
+  answers.push_back(option == "--subject-to"
+                        ? fmt::format("To have valid designs only: {}.", text)
+                        : fmt::format("To see it for every design: {}.", text));
+}
+
 std::string headline(const SweepResult& result) {
   std::string text = fmt::format("{} design{} in {} parameter{}", result.plan.size(),
                                  result.plan.size() == 1 ? "" : "s", result.plan.varied.size(),
@@ -291,8 +352,23 @@ std::string headline(const SweepResult& result) {
   if (!result.checks.empty())
     text += fmt::format("; {} agrees at {} of {} designs", other_model(result), agreeing(result),
                         result.checks.size());
+  if (!result.best.empty()) text += "; " + validity_text(result.best, "best");
   return text;
 }
+
+namespace {
+
+// Of a value of an output, for the answers.
+std::string printed(double value) { return fmt::format("{:.5g}", value); }
+
+// "; not valid over 7.5 % of the turn" of a best design.
+std::string validity_suffix(const SweepResult& result, std::optional<std::size_t> design) {
+  for (const DesignValidity& v : result.best)
+    if (v.design == design && !v.valid()) return "; " + v.text();
+  return "";
+}
+
+}  // namespace
 
 std::vector<std::string> sweep_answers(const SweepResult& result) {
   const SweepView view(result);
@@ -318,20 +394,31 @@ std::vector<std::string> sweep_answers(const SweepResult& result) {
       continue;
     }
     const auto end = [&](const char* word, std::size_t d) {
-      return fmt::format("{} {:.5g}{} ({})", word, view.result(d, k), unit_after(output.unit),
+      return fmt::format("{} {}{} ({})", word, printed(view.result(d, k)), unit_after(output.unit),
                          design_text(d));
     };
     const int direction = view.direction(k);
+    if (printed(view.result(*lowest, k)) == printed(view.result(*highest, k)) &&
+        lowest != highest) {
+      answers.push_back(fmt::format("{} is {}{} in every design, to the digits that are printed.",
+                                    output.name, printed(view.result(*lowest, k)),
+                                    unit_after(output.unit)));
+      continue;
+    }
     answers.push_back(output.name + ": " +
                       (direction < 0   ? end("best, lowest", *lowest)
                        : direction > 0 ? end("best, highest", *highest)
                                        : end("lowest", *lowest) + "; " + end("highest", *highest)) +
+                      validity_suffix(result, direction < 0   ? lowest
+                                              : direction > 0 ? highest
+                                                              : std::nullopt) +
                       ".");
   }
   if (view.sought() > 1)
     answers.push_back(fmt::format(
         "Trade-off: {} designs of {} are not dominated in the {} outputs sought (Pareto front).",
         view.front().size(), view.designs(), view.sought()));
+  append_limits(answers, result.best, "--output", result.every);
   if (result.every > 1)
     answers.push_back(
         fmt::format("Of every {}th design alone; the result files have all.", result.every));
@@ -345,6 +432,7 @@ report::Document sweep_document(const SweepResult& result, const report::Lines& 
       study::case_document(description, result.base.name + ": a sweep", program);
   document.verdict = report::Verdict{result.agrees(), headline(result)};
   document.verdict->answers = sweep_answers(result);
+  document.verdict->not_valid = not_valid_designs(result.best, "best");
   if (result.checks.empty()) {
     document.verdict->agrees.reset();
     document.verdict->word = "Sweep";
@@ -358,7 +446,12 @@ report::Document sweep_document(const SweepResult& result, const report::Lines& 
   document.runs.emplace();
   document.runs->push_back(plan_section(result, view));
   document.runs->push_back(outputs_section(view));
-  if (view.sought() > 0) document.runs->push_back(best_section(view));
+  if (view.sought() > 0) {
+    document.runs->push_back(best_section(view));
+    for (const DesignValidity& v : result.best)
+      document.runs->back().facts.emplace_back(fmt::format("design {}", view.number(v.design)),
+                                               v.valid() ? "valid over the whole turn" : v.text());
+  }
   if (!result.infeasible.empty()) document.runs->push_back(infeasible_section(result, view));
   if (!result.checks.empty()) document.runs->push_back(checks_section(result));
   if (!result.agrees()) document.runs->push_back(differing_section(result));

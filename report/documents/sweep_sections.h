@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "bentaxis/designs/sweep.h"
@@ -21,5 +22,16 @@ report::Section best_section(const SweepView& view);
 /// Rows of designs: their values and results.
 void put_designs(const SweepView& view, const std::vector<std::size_t>& designs,
                  report::Table& table);
+
+/// How many of the designs are valid: "1 of 2 best designs is not valid over the whole turn".
+/// @param which  "best", "chosen"
+std::string validity_text(const std::vector<DesignValidity>& designs, const std::string& which);
+/// "for 1 of 2 best designs", for the verdict of a report; "" where all are valid.
+std::string not_valid_designs(const std::vector<DesignValidity>& designs, const std::string& which);
+/// Adds which limits do not hold, and how the outputs validity.* are asked for.
+/// @param option  "--subject-to" or "--output"
+/// @param every   of how many designs of the plan one is here
+void append_limits(std::vector<std::string>& answers, const std::vector<DesignValidity>& designs,
+                   const std::string& option, std::size_t every = 1);
 
 }  // namespace bentaxis::designs

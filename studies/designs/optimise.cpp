@@ -758,6 +758,7 @@ Optimisation Optimiser::Implementation::run(const OptimiseWork& work,
     }
   found.kept = batches.kept();
   found.kept_singles = batches.kept_singles();
+  if (work.rank == 0) found.validity = validity_of_chosen(found);
   return found;
 }
 

@@ -297,6 +297,7 @@ SweepResult compute_in_memory(const Sweep& sweep, int threads, const Progress& p
     std::move(block.checks.begin(), block.checks.end(), std::back_inserter(result.checks));
   }
   result.all_infeasible = result.infeasible.size();
+  result.best = validity_of_best(result);
   result.seconds = watch.seconds();
   return result;
 }

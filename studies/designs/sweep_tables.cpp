@@ -163,6 +163,7 @@ SweepResult write_sweep(const Sweep& sweep, const SweepParts& parts, const Sweep
   if (hdf5) hdf5->finish(result.checks);
   if (!result.checks.empty())
     folder.add("sweep_checks.csv", checks_csv(result.checks, result.plan));
+  result.best = validity_of_best(result);
   return result;
 }
 

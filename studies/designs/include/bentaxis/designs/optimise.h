@@ -126,6 +126,7 @@ struct Optimisation {
   /// the worst point of the front of all: 1 where a search finds everything alone. Of up to three
   /// objectives: of more a volume would take longer than the search.
   std::vector<double> shares_of_front;
+  std::vector<DesignValidity> validity = {};  ///< of each chosen design: validity_of_chosen()
 };
 
 /// The case of a design. @throws InputError

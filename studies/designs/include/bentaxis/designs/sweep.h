@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bentaxis/compare/difference.h"
+#include "bentaxis/designs/design_validity.h"
 #include "bentaxis/designs/distribution.h"
 #include "bentaxis/designs/evaluator.h"
 #include "bentaxis/designs/points.h"
@@ -141,6 +142,7 @@ struct SweepResult {
   std::vector<SweepCheck> checks;  ///< of all designs of the plan, by their numbers there
   double tolerance = kCheckTolerance;
   double seconds = 0;
+  std::vector<DesignValidity> best = {};  ///< of the best designs: validity_of_best()
   bool agrees() const;
 };
 
