@@ -112,7 +112,9 @@ class AnswersTest(unittest.TestCase):
         self.assertRegex(answers[0], r"^Delivers 90\.5\d l/min \(at suction density\) at a mean of 275 bar and 1500 rpm: volumetric efficiency 94\.7")
         report = json.loads((self.folder / "out" / "pressure.json").read_text())
         flagged = [row for row in report["timing"] if row["flagged"]]
-        self.assertTrue(answers[1].startswith(f"Port timing: {len(flagged)} of {len(report['timing'])} "))
+        limited = [row for row in report["timing"] if row["limit"] is not None]
+        self.assertEqual([row["code"] for row in report["timing"] if row not in limited], ["connected-area"])
+        self.assertTrue(answers[1].startswith(f"Port timing: {len(flagged)} of {len(limited)} quantities with a limit exceed it: "))
 
     def test_turn(self):
         """compare, show and run say the same of the same turn, and it is what the curves hold."""

@@ -139,13 +139,16 @@ std::string not_valid_text(const std::vector<analytic::ValidityLimit>& limits) {
 
 std::string timing_answer(const std::vector<TimingRow>& rows) {
   std::vector<std::string> names;
-  for (const TimingRow& row : rows)
+  std::size_t limited = 0;
+  for (const TimingRow& row : rows) {
     if (row.flagged) names.push_back(row.quantity);
+    limited += row.limit.has_value();
+  }
   if (names.empty()) return "Port timing: within all limits.";
   return fmt::format(
-      "Port timing: {} of {} quantities exceed their limits: {} (pressure --advise: what to "
+      "Port timing: {} of {} quantities with a limit exceed it: {} (pressure --advise: what to "
       "change).",
-      names.size(), rows.size(), fmt::join(names, ", "));
+      names.size(), limited, fmt::join(names, ", "));
 }
 
 std::vector<analytic::ValidityLimit> limits_of_turn(Case the_case, const Assumptions& assumptions,
