@@ -103,6 +103,20 @@ class LifeTest(ProgramTest):
         self.assertIn("1 with warnings", self.run_program("index", "out").out)
         self.assertIn("not valid " + said, (self.folder / "out" / "index.html").read_text())
 
+    def test_a_file_of_another_kind_is_no_list_of_parameters(self):
+        """A curve of the pressure: what it lacks is the share, and no parameter is proposed."""
+        line = self.refused(*self.life(*self.duty("theta_deg,pressure_bar\n0,1\n")))
+        self.assertNotIn("no such parameter", line)
+        self.assertLess(len(line), 300)
+
+    def test_the_missing_rating_alone_is_named(self):
+        text = (program.REPO / "cases" / "bap63_bearing_life.toml").read_text()
+        for missing in (["tapered_dynamic_rating_kN"], ["cylindrical_static_rating_kN"], ["tapered_Y", "cylindrical_dynamic_rating_kN"]):
+            (self.folder / "case.toml").write_text(
+                "".join(line + "\n" for line in text.splitlines() if line.split(" ")[0] not in missing))
+            line = self.refused(*self.life(case="case.toml"))
+            self.assertIn(f"case.toml: [bearings] {', '.join(missing)}: {'is' if len(missing) == 1 else 'are'} missing, and must be given", line)
+
     def test_at_rest_every_angle_counts(self):
         out = self.run_program(*self.life("--set", "operation.speed_rpm=0")).out
         shares = [float(share) for share in re.findall(r"exceeded over ([\d.]+) % of the angles", out)]
@@ -156,7 +170,8 @@ class LifeTest(ProgramTest):
         self.assertEqual(self.hours()[0], [None, None])
 
     def test_what_is_refused(self):
-        for text, *words in (("speed_rpm\n1500\n", "duty.csv", "share"), ("share,speed_rpm\n1,1500\n0,1500\n", "duty.csv:3", "share = 0"),
+        for text, *words in (("speed_rpm\n1500\n", "duty.csv", "share"),
+                             ("theta_deg,pressure_bar\n0,1\n", "duty.csv:1: columns theta_deg, pressure_bar: the column \"share\" is missing"), ("share,speed_rpm\n1,1500\n0,1500\n", "duty.csv:3", "share = 0"),
                              ("share,tilt_deg\n1,95\n", "duty.csv:2", "tilt_deg = 95", "[0, 90)"), ("share,kind\n1,0\n", "several tables"),
                              ("share,speed_rpm,operation.speed_rpm\n1,1,2\n", "speed_rpm", "more than once"), ("share,share\n1,1\n", "duty.csv:1", "duplicate column"),
                              ("share\n", "no row"), ("share,backlash_um\n1,2\n", "backlash_um")):

@@ -32,6 +32,15 @@ std::string full_name(const std::string& name) {
 
 constexpr const char* kShare = "share";
 
+// "theta_deg, pressure_bar", the first ones of many.
+std::string names_of(const std::vector<std::string>& header) {
+  constexpr std::size_t kNamed = 5;
+  std::string text;
+  for (std::size_t c = 0; c < std::min(kNamed, header.size()); ++c)
+    text += (c == 0 ? "" : ", ") + header[c];
+  return header.size() > kNamed ? text + ", .." : text;
+}
+
 }  // namespace
 
 std::string DutyCycle::name_of(std::size_t row) const {
@@ -50,6 +59,12 @@ DutyCycle read_duty_cycle(const std::filesystem::path& file, const Case& base) {
   duty.file = file;
   duty.rows.clear();
   std::size_t share = table.header.size();
+  // First, as a file without it is of another kind.
+  if (std::find(table.header.begin(), table.header.end(), kShare) == table.header.end())
+    throw InputError(file.string() + ":1: columns " + names_of(table.header) +
+                     ": the column \"share\" is missing (share of the time of each row); a duty "
+                     "cycle has it beside columns of parameters, such as speed_rpm or "
+                     "pressure.delivery_bar");
   std::vector<std::size_t> columns;
   for (std::size_t c = 0; c < table.header.size(); ++c) {
     if (table.header[c] == kShare) {
@@ -65,8 +80,6 @@ DutyCycle read_duty_cycle(const std::filesystem::path& file, const Case& base) {
     }
     columns.push_back(c);
   }
-  if (share == table.header.size())
-    throw InputError(file.string() + ": has no column share, the share of the time");
   if (table.rows.empty()) throw InputError(file.string() + ": has no row");
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     DutyCycle::Row row;

@@ -16,14 +16,31 @@ constexpr double kMinutesPerHour = 60;
 
 const BearingRatings& rated(const Case& the_case) {
   const BearingRatings& b = the_case.ratings;
-  if (!b.tapered || !b.cylindrical)
-    throw InputError(the_case.file.string() + ": [bearings] " +
-                     (b.tapered
-                          ? "cylindrical_dynamic_rating_kN, cylindrical_static_rating_kN"
-                          : "tapered_dynamic_rating_kN, tapered_static_rating_kN, tapered_Y") +
-                     ": must all be given: the rating life is computed from them, as in "
-                     "cases/bap63_bearing_life.toml");
-  return b;
+  if (b.tapered && b.cylindrical) return b;
+  // What the file has of them is no rating, but it says which key is missing.
+  const auto given = [&](const char* key) {
+    return std::any_of(the_case.entries.begin(), the_case.entries.end(),
+                       [&](const InputEntry& entry) {
+                         return entry.table == "bearings" && entry.key == key && !entry.defaulted;
+                       });
+  };
+  std::string missing;
+  std::size_t count = 0;
+  const auto ask = [&](const char* key) {
+    if (given(key)) return;
+    missing += (missing.empty() ? "" : ", ") + std::string(key);
+    ++count;
+  };
+  if (!b.tapered)
+    for (const char* key : {"tapered_dynamic_rating_kN", "tapered_static_rating_kN", "tapered_Y"})
+      ask(key);
+  if (!b.cylindrical)
+    for (const char* key : {"cylindrical_dynamic_rating_kN", "cylindrical_static_rating_kN"})
+      ask(key);
+  throw InputError(the_case.file.string() + ": [bearings] " + missing +
+                   (count == 1 ? ": is missing" : ": are missing") +
+                   ", and must be given: the rating life is computed from the ratings of both "
+                   "bearings, as in cases/bap63_bearing_life.toml");
 }
 
 const BearingRating& rating_of(const BearingRatings& b, Bearing bearing) {
