@@ -167,6 +167,9 @@ class RattleTest(ProgramTest):
             ({"delivery": "100:200:#1001"}, "1000"),
             ({"delivery": "100:2000:1"}, "1000"),
             ({"delivery": "#3"}, "FROM:TO:#N"),
+            ({"delivery": "x"}, "must be a list of numbers with commas (100,200), FROM:TO:STEP, FROM:TO:#N or one number, in bar, >= 0"),
+            ({"speeds": "x"}, "must be a list of numbers with commas (100,200), FROM:TO:STEP, FROM:TO:#N or one number, in rpm, >= 1"),
+            ({"delivery": "0,100:200:5"}, "\"100:200:5\" must be a number in bar, >= 0; a range is FROM:TO:STEP or FROM:TO:#N, without a list"),
             ({"delivery": "nan:200:#3"}, "FROM:TO:STEP"),
         ):
             with self.subTest(options):

@@ -92,7 +92,8 @@ std::vector<double> values_in(const std::string& name, const std::string& text,
                               const std::string& unit, double least) {
   constexpr int kMost = 1000;
   if (text.find(',') == std::string::npos)
-    return study::spaced_values(name, text, unit, least, kMost);
+    return study::spaced_values(name, text, unit, least, kMost,
+                                "a list of numbers with commas (100,200), ");
   std::vector<double> values;
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t end = std::min(text.find(',', at), text.size());
@@ -100,7 +101,8 @@ std::vector<double> values_in(const std::string& name, const std::string& text,
     const auto value = number_in(one);
     if (!value || *value < least)
       throw InputError(name + " " + text + ": \"" + one + "\" must be a number in " + unit +
-                       (std::isfinite(least) ? ", >= " + number_text(least) : ""));
+                       (std::isfinite(least) ? ", >= " + number_text(least) : "") +
+                       "; a range is FROM:TO:STEP or FROM:TO:#N, without a list");
     values.push_back(*value);
     at = end + 1;
   }

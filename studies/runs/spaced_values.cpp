@@ -11,11 +11,12 @@
 namespace bentaxis::study {
 
 std::vector<double> spaced_values(const std::string& what, const std::string& text,
-                                  const std::string& unit, double least, int most) {
+                                  const std::string& unit, double least, int most,
+                                  const std::string& also) {
   const auto fail = [&](const std::string& why) {
     throw InputError(what + " " + text + ": must " + why);
   };
-  const std::string forms = "be FROM:TO:STEP, FROM:TO:#N or one number" +
+  const std::string forms = "be " + also + "FROM:TO:STEP, FROM:TO:#N or one number" +
                             (unit.empty() ? "" : ", in " + unit) +
                             (std::isfinite(least) ? ", >= " + number_text(least) : "");
   std::vector<double> numbers;
