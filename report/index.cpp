@@ -95,19 +95,18 @@ std::string row_of(const IndexEntry& entry) {
       markup_of(entry.command), image(entry.picture));
 }
 
+constexpr const char* kDiffers = "differs";
+
 // "2 differ, 1 no design": what is wrong by the word of its page.
 std::string wrong_counts(const std::vector<IndexEntry>& entries) {
   std::map<std::string, std::size_t> others;
   std::size_t differ = 0;
   for (const IndexEntry& entry : entries) {
     if (tone_of(entry) != std::string_view("bad")) continue;
-    std::string word = index_word(entry);
-    if (word.ends_with("iffers")) {
+    if (const std::string fault = index_fault(entry); fault == kDiffers)
       ++differ;
-      continue;
-    }
-    if (word[0] >= 'A' && word[0] <= 'Z') word[0] = static_cast<char>(word[0] - 'A' + 'a');
-    ++others[word];
+    else
+      ++others[fault];
   }
   std::string text = differ > 0 ? fmt::format(", {} differ", differ) : "";
   for (const auto& [word, n] : others) text += fmt::format(", {} {}", n, word);
@@ -176,6 +175,13 @@ bool is_report(const Json& json) {
 std::string index_word(const IndexEntry& entry) {
   if (!entry.word.empty()) return entry.word;
   return !entry.agrees ? "No verdict" : *entry.agrees ? "Agrees" : "Differs";
+}
+
+std::string index_fault(const IndexEntry& entry) {
+  std::string word = index_word(entry);
+  if (word.ends_with("iffers")) return kDiffers;
+  if (word[0] >= 'A' && word[0] <= 'Z') word[0] = static_cast<char>(word[0] - 'A' + 'a');
+  return word;
 }
 
 std::optional<IndexEntry> index_entry(const std::string& json_text) {

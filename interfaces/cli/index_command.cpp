@@ -91,8 +91,7 @@ std::string more_of(std::size_t count) {
 std::string mark_of(const report::IndexEntry& entry) {
   if (!entry.agrees) return "-";
   if (*entry.agrees) return "agrees";
-  const std::string word = report::index_word(entry);
-  return word == "No design" ? "no design" : "differs";
+  return report::index_fault(entry);
 }
 
 int index(const IndexOptions& options) {

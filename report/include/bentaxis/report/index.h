@@ -50,6 +50,8 @@ std::string index_headline(const std::vector<IndexEntry>& entries,
 
 /// The verdict of a report in one or two words, as on its page.
 std::string index_word(const IndexEntry& entry);
+/// What is wrong in one that does not agree: "differs", "no design", "refuted".
+std::string index_fault(const IndexEntry& entry);
 
 /// The page: a table that needs no script, and a filter for those who have one.
 /// @param title    of the page
