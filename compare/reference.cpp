@@ -95,6 +95,7 @@ template <class Map>
 void read_ours(TableReader& in, Map& map) {
   map.ours = in.text("ours");
   map.unit = in.text("unit", "");
+  map.file_says = in.text("file_says", "");
   map.unit_in_si = read_unit(in, map.unit);
   map.factor = read_factor(in);
   in.finish();
@@ -646,6 +647,20 @@ std::vector<std::string> assumptions_of(const CurveDescription& curve) {
     add(column.theirs, column.ours, column.factor, column.unit);
   for (const auto& [meaning, list] : meanings)
     lines.push_back("assumed, times " + meaning + ": " + list);
+  std::map<std::pair<std::string, std::string>, std::string> against;  // units -> columns
+  const auto contradict = [&](const std::string& theirs, const auto& map) {
+    if (map.file_says.empty()) return;
+    auto& list = against[{map.file_says, map.unit}];
+    list += (list.empty() ? "" : ", ") + theirs;
+  };
+  for (const auto& vector : curve.vectors)
+    for (const std::string& theirs : vector.theirs)
+      if (!theirs.empty()) contradict(theirs, vector);
+  for (const auto& column : curve.columns) contradict(column.theirs, column);
+  for (const auto& [units, list] : against)
+    lines.push_back("assumed against the file: its heading says " + units.first +
+                    ", its values fit the model in " + units.second + ": " + list +
+                    "; the heading is wrong, or the values are");
   if (!curve.ignored.empty()) lines.push_back("assumed to be no result: " + joined(curve.ignored));
   return lines;
 }

@@ -205,6 +205,19 @@ class OwnRecordTest(ImportTest):
         self.assertEqual(signs.get("Td_z1_Nm"), "-1", self.description())
         self.regress(DONE)
 
+    def test_a_heading_that_its_values_contradict_is_stated_as_long_as_it_stands(self):
+        """In the description, by regress and by compare --with, not by the proposal alone."""
+        said = "its heading says kN, its values fit the model in N: tooth [kN]"
+        out = self.new(self.record(["torque [Nm]", "tooth [kN]"], [("Td_z1_Nm", 1), ("Rcs_z4_N", 1)]), "--accept").out
+        self.assertIn("the file says kN", out)
+        self.assertIn(said, out)
+        self.assertEqual(re.findall(r'unit = "(.*)"\nfile_says = "(.*)"', self.description()), [("N", "kN")])
+        self.assertIn(said, self.regress(DONE))
+        self.run_program("compare", "ref/case.toml", "--with", "ref", "--out", "out")
+        self.assertIn(said, (self.folder / "out" / "report.json").read_text())
+        shutil.rmtree(self.folder / "ref")
+        self.assertNotIn("heading", self.new(self.record(["torque [Nm]", "tooth [N]"], [("Td_z1_Nm", 1), ("Rcs_z4_N", 1)]), "--accept").out)
+
     def test_the_tolerance_proposed_is_that_of_the_digits(self):
         for digits in (3, 4):
             shutil.rmtree(self.folder / "ref", ignore_errors=True)

@@ -179,6 +179,12 @@ class Guesser {
                                     table_.header.begin());
   }
 
+  // Of a column's heading, where it is another one than the values fit; "" = none.
+  std::string contradicting_unit(std::size_t column, const std::string& unit) const {
+    const std::string& said = table_.units[column];
+    return known_unit(said).empty() || known_unit(said) == unit ? "" : said;
+  }
+
   Series sampled(std::size_t column, double sign, double phase, std::size_t count) const {
     Series out;
     for (std::size_t i = 0; i < count; ++i)
@@ -906,10 +912,8 @@ MappingGuess Guesser::finish(const Found& found) {
       ours_constant = ours_constant && is_constant(pairing.curves[k]);
       theirs_square += dot(x, x);
       ours_square += dot(y, y);
-      const std::string& unit = table_.units[pairing.columns[k]];
-      if (!unit.empty() && !known_unit(unit).empty() && known_unit(unit) != pairing.unit &&
-          proposal.remark.empty())
-        proposal.remark = "the file says " + unit;
+      const std::string unit = contradicting_unit(pairing.columns[k], pairing.unit);
+      if (!unit.empty() && proposal.remark.empty()) proposal.remark = "the file says " + unit;
     }
     const double scale = std::sqrt(theirs_square * ours_square);
     proposal.correlation = scale > 0 ? product / scale : 0;
@@ -930,8 +934,16 @@ MappingGuess Guesser::finish(const Found& found) {
       }
       continue;
     }
-    curve.columns.insert(curve.columns.end(), pairing.maps.begin(), pairing.maps.end());
-    if (pairing.vector) curve.vectors.push_back(*pairing.vector);
+    for (compare::ColumnMap map : pairing.maps) {
+      map.file_says = contradicting_unit(column_of(map.theirs), pairing.unit);
+      curve.columns.push_back(std::move(map));
+    }
+    if (pairing.vector) {
+      curve.vectors.push_back(*pairing.vector);
+      for (const std::size_t column : pairing.columns)
+        if (const std::string says = contradicting_unit(column, pairing.unit); !says.empty())
+          curve.vectors.back().file_says = says;
+    }
     guess.proposals.push_back(std::move(proposal));
   }
   if (guess.proposals.empty())

@@ -94,9 +94,12 @@ std::string list_text(const std::vector<std::string>& texts) {
   return "[" + joined(texts, ", ", toml_text) + "]";
 }
 
-std::string factor_lines(const std::string& unit, double factor) {
+std::string factor_lines(const std::string& unit, double factor, const std::string& file_says) {
   std::string text;
   if (!unit.empty()) text += "unit = " + toml_text(unit) + "\n";
+  if (!file_says.empty())
+    text += "file_says = " + toml_text(file_says) +
+            "  # the heading of the file, which its values contradict: check which is right\n";
   if (factor < 0) text += "sign = -1\n";
   return text;
 }
@@ -143,12 +146,14 @@ std::string curve_text(const MappingGuess& guess) {
                             i == 0 ? "  # direction cosines of their x" : "");
   }
   for (const auto& vector : curve.vectors)
-    text += fmt::format("\n[[curve.vector]]\ntheirs = {}\nours = {}\n{}",
-                        list_text({vector.theirs.begin(), vector.theirs.end()}),
-                        toml_text(vector.ours), factor_lines(vector.unit, vector.factor));
+    text +=
+        fmt::format("\n[[curve.vector]]\ntheirs = {}\nours = {}\n{}",
+                    list_text({vector.theirs.begin(), vector.theirs.end()}), toml_text(vector.ours),
+                    factor_lines(vector.unit, vector.factor, vector.file_says));
   for (const auto& column : curve.columns)
     text += fmt::format("\n[[curve.column]]\ntheirs = {}\nours = {}\n{}", toml_text(column.theirs),
-                        toml_text(column.ours), factor_lines(column.unit, column.factor));
+                        toml_text(column.ours),
+                        factor_lines(column.unit, column.factor, column.file_says));
   return text;
 }
 

@@ -64,14 +64,16 @@ struct VectorMap {
   std::string unit;                   ///< of theirs; "" = the channels' own
   double unit_in_si = 0;              ///< 0 = the channels' own unit
   double factor = 1;
+  std::string file_says = {};  ///< another unit in the file's heading, or ""
 };
 
 /// One column of a foreign curve and the channel it stands for: ours = factor x theirs.
 struct ColumnMap {
   std::string theirs, ours;
-  std::string unit;       ///< of theirs; "" = the channel's own
-  double unit_in_si = 0;  ///< of theirs; 0 = the channel's own unit
-  double factor = 1;      ///< sign and any further factor
+  std::string unit;            ///< of theirs; "" = the channel's own
+  double unit_in_si = 0;       ///< of theirs; 0 = the channel's own unit
+  double factor = 1;           ///< sign and any further factor
+  std::string file_says = {};  ///< another unit in the file's heading, or ""
 };
 
 /// One curve file of a reference.
