@@ -101,7 +101,7 @@ class IdentifyTest(ProgramTest):
             out = self.identify(data, *options).out
             report = json.loads((self.folder / "out" / "report.json").read_text())
             ends = "pump.bore_diameter_mm ends at the upper bound 22.4 of its range 20 to 22.4"
-            self.assertIn(ends + ": the value that the data want lies beyond it, or the bound is wrong", out)
+            self.assertIn(ends + ": the value that the data want lies outside of it, or the bound is wrong", out)
             self.assertIn("pump.bore_diameter_mm = 22.4 mm, its upper bound (case: 22.5", out)
             self.assertIn(ends, report["verdict"]["headline"])
             self.assertNotIn("do not determine", out)
@@ -112,7 +112,7 @@ class IdentifyTest(ProgramTest):
             self.assertIn("Unknown at its bound", [w["name"] for w in report["warnings"]])
             tables = {run["title"]: [dict(zip(run["table"]["columns"], row)) for row in run["table"]["rows"]] for run in report["runs"]}
             self.assertEqual([row["ends at"] for row in tables["Unknowns"]], ["its upper bound"])
-            gain = float(re.search(r"fall by about ([\d.]+) beyond it", out).group(1))
+            gain = float(re.search(r"fall by about ([\d.]+) there", out).group(1))
             self.assertAlmostEqual(gain, tables["Data that unknowns are fitted to"][0]["residual"] ** 2, delta=0.02 * gain)
         self.assertIn("how well reactions are known is not stated", out)
         # Within its range nothing of it is said.

@@ -102,7 +102,9 @@ std::vector<double> values_in(const std::string& name, const std::string& text,
     if (!value || *value < least)
       throw InputError(name + " " + text + ": \"" + one + "\" must be a number in " + unit +
                        (std::isfinite(least) ? ", >= " + number_text(least) : "") +
-                       "; a range is FROM:TO:STEP or FROM:TO:#N, without a list");
+                       (one.find(':') == std::string::npos
+                            ? ""
+                            : "; a range is FROM:TO:STEP or FROM:TO:#N, without a list"));
     values.push_back(*value);
     at = end + 1;
   }

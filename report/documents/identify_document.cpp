@@ -96,8 +96,8 @@ std::string held_text(const DataModel& model, const HeldUnknown& held) {
 // The same with what follows.
 std::string held_line(const DataModel& model, const HeldUnknown& held) {
   return fmt::format(
-      "{}: the value that the data want lies beyond it, or the bound is wrong (chi-square would "
-      "fall by about {:.3g} beyond it)",
+      "{}: the value that the data want lies outside of it, or the bound is wrong (chi-square "
+      "would fall by about {:.3g} there)",
       held_text(model, held), held.gain);
 }
 

@@ -147,11 +147,11 @@ Information information_of(const DataModel& model, std::span<const double> x,
                            std::span<const double> jacobian,
                            const std::vector<std::size_t>& at_bound = {});
 
-/// An unknown that ends at a bound, and that the data would take beyond it.
+/// An unknown that ends at a bound, and that the data would take outside of it.
 struct HeldUnknown {
   std::size_t unknown = 0;
   bool high = false;  ///< the upper bound
-  double gain = 0;    ///< by which chi-square would fall beyond it if the model were linear
+  double gain = 0;    ///< by which chi-square would fall there if the model were linear
 };
 /// Those that chi-square tells from a value inside: by more than 0.01.
 std::vector<HeldUnknown> held_unknowns(const DataModel& model, const LeastSquaresFit& fit);
