@@ -381,7 +381,7 @@ TEST(Modules, OneThatFailsIsNamedInALine) {
       {"leaves", "leaves: ended before it had answered (exit status 7)"},
       {"old", "has interface 3, this program 2"},
       {"says_nothing", "says_nothing: a faulty engine"},
-      {"no_library", "is no module of an engine"},
+      {"no_library", "is no module of an engine: /"},
       {"absent",
        "absent: is not installed: there is no bentaxis_engine_absent.so beside the program "
        "or in BENTAXIS_ENGINE_PATH"}};

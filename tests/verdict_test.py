@@ -305,8 +305,10 @@ class RoundOff(unittest.TestCase):
                  if c["compared"] and c["own_peak"] and 1e-12 * c["peak"] < c["own_peak"] < 1e-3 * c["peak"]}
         texts = [w["text"] for w in report["warnings"] if w["name"] == "small channels"]
         self.assertEqual(len(texts), 1 if small else 0)
-        for name in small:
-            self.assertIn(f"{name} (", texts[0])
+        for name in small:  # with the share of the smallest that would pass
+            least = min((c for c in report["channels"] if f"{c['quantity']}_{c['axis']}" == name and c["compared"] and c["own_peak"]),
+                        key=lambda c: c["own_peak"] / c["peak"])
+            self.assertIn(f"{name} ({least['allowed'] / least['own_peak']:.1e} of itself)", texts[0])
         self.assertIn("Rs_y3", small)
 
 
