@@ -117,7 +117,7 @@ function pumpInSpace(report, data, scene) {
     }
     scaleWords.textContent = (body ? "One scale for all forces on this body, one for all moments: the longest arrow is the largest of them at this place."
       : common.box.checked ? "One scale for all forces and one for all moments: the longest arrow is the largest peak of those shown."
-      : "Each kind has a scale of its own: its longest arrow is its peak over all rows, as given beside its name.")
+      : "Each kind has a scale of its own: its longest arrow is its peak over the rows of this view, as given beside its name.")
       + (length !== 1 ? ` Times ${number(length, 3)}.` : "") + " Pale and hollow: drawn longer than it is, to be seen. A dot: zero."
       + (mode === "both" ? ` Wide and pale: ${state.models[0]}; narrow: ${state.models[1]}.` : "")
       + (mode === "difference" ? ` ${state.models[1]} minus ${state.models[0]}, magnified ${body ? number(magnification(...scaleOf({}))) + " times" : "as said beside each name"};`
