@@ -115,7 +115,7 @@ class DisplacementTest(ProgramTest):
     def test_a_motor_runs_backwards_and_speeds_stay_positive(self):
         out = self.run_program("pressure", self.case("bap63_motoring"), *FAST, *TEST, "--out", "out").out
         # Of a motor the flow that it takes is the larger one.
-        self.assertRegex(out, r"Takes 10\d\.\d l/min at .*: volumetric efficiency as a motor 9\d\.\d+ %")
+        self.assertRegex(out, r"Takes 10\d\.\d l/min \(at suction density\) at .*: volumetric efficiency as a motor 9\d\.\d+ %")
         rows = self.rows()
         self.assertTrue(all(float(r["speed_rpm"]) > 0 and float(r["flow_l_per_min"]) > 0 for r in rows))
         volume = derived([tuple(float(r[k]) for k in ("speed_rpm", "delivery_bar", "pressure_difference_bar",

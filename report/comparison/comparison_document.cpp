@@ -31,7 +31,7 @@ report::Verdict verdict_of(const ComparisonResult& r) {
   report::Verdict verdict{r.passes(), r.headline()};
   verdict.answers = comparison_answers(r);
   verdict.not_valid = not_valid_text(r.limits);
-  if (r.agrees() && only_one_computed(r.comparison)) verdict.word = "Agrees in part";
+  if (r.agrees() && !r.split && only_one_computed(r.comparison)) verdict.word = "Agrees in part";
   if (r.with) {
     verdict.models_agree = r.agrees();
     if (r.agrees_but_for_reference()) {

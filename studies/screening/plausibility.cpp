@@ -1004,8 +1004,9 @@ const Check kChecks[] = {
     {"gravity", "gravity that is not 0 and outside {0:g} .. {1:g} m/s2 (it acts along -y1)",
      "operation", "gravity_m_per_s2", [](const Facts& f) { return f.pump.gravity != 0; }},
     {"samples",
-     "fewer than 6 or more than 1e6 angles in a turn, or more than 1e4 revolutions; a number of "
-     "angles that shares so much with N that the N pistons are seen in fewer than 6 positions",
+     "fewer than 6 or more than 1e6 angles in a turn, or more than 1e4 revolutions. Also so much "
+     "in "
+     "common with N that the N pistons are seen in fewer than 6 positions",
      [](const Facts& f) {
        return first_of({implausible(f, "operation", "samples_per_revolution"),
                         implausible(f, "operation", "revolutions"), repeated_samples(f)});

@@ -22,15 +22,15 @@ struct Summary {
   /// pump delivers backwards.
   bool motors() const { return ideal_flow < 0 && flow < 0; }
 
-  double displacement = 0;           ///< m3 per revolution, N A stroke
-  double ideal_flow = 0;             ///< m3/s, displacement x speed, below 0 backwards
-  double density = 0;                ///< kg/m3, in the suction port: that of all volume flows here
-  double mass_flow = 0;              ///< kg/s, mean, to the load
-  double flow = 0;                   ///< m3/s, the same / density
+  double displacement = 0;  ///< m3 per revolution, N A stroke
+  double ideal_flow = 0;    ///< m3/s, displacement x speed, below 0 backwards
+  double density = 0;       ///< kg/m3, in the suction port: that of all volume flows here
+  double mass_flow = 0;     ///< kg/s, mean, to the load
+  double flow = 0;          ///< m3/s, the same / density
   /// flow / ideal_flow by magnitude, below 0 where more leaks than is delivered; of a motor
   /// ideal_flow / flow.
   double volumetric_efficiency = 0;
-  double leakage = 0;                ///< m3/s, mean, of all chambers
+  double leakage = 0;  ///< m3/s, mean, of all chambers
   double delivery_mean = 0, delivery_least = 0,
          delivery_greatest = 0;  ///< Pa, of the delivery volume
   /// (max - min)/mean of a flow averaged over a quarter of a degree, so that what passes in
