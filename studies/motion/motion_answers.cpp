@@ -15,28 +15,19 @@ namespace {
 std::size_t rows_of(const Trajectory& run) { return run.lag.size(); }
 double time_of(const Trajectory& run, std::size_t row) { return run.state(row, StateColumn::time); }
 
-// Mean speed over the N-th of a turn that ends with a row; of that row where the shaft has not
-// turned so far since the row before.
+// Mean speed over the N-th of a turn that ends with a row, by the time that it takes; that of the
+// row where the shaft has not turned so far.
 double mean_speed(const Trajectory& run, std::size_t end, int pistons) {
-  const auto speed = [&](std::size_t row) { return run.state(row, StateColumn::shaft_speed); };
   const auto turned = [&](std::size_t row) {
-    return std::abs(run.state(end, StateColumn::theta) - run.state(row, StateColumn::theta));
+    return run.state(end, StateColumn::theta) - run.state(row, StateColumn::theta);
   };
   const double pitch = 360.0 / pistons;
-  double area = 0;
-  for (std::size_t row = end; row > 0; --row) {
-    double step = time_of(run, row) - time_of(run, row - 1), before = speed(row - 1);
-    const bool last = turned(row - 1) >= pitch;
-    if (last) {  // of the step that begins before that N-th, the part within
-      const double part = (pitch - turned(row)) / (turned(row - 1) - turned(row));
-      step *= part;
-      before = speed(row) + part * (before - speed(row));
-    }
-    area += step * (speed(row) + before) / 2;
-    const double time = time_of(run, end) - time_of(run, row) + step;
-    if (last) return time > 0 ? area / time : speed(end);
-  }
-  return speed(end);
+  std::size_t row = end;
+  while (row > 0 && std::abs(turned(row)) < pitch) --row;
+  if (std::abs(turned(row)) < pitch) return run.state(end, StateColumn::shaft_speed);
+  const double part = (std::abs(turned(row)) - pitch) / std::abs(turned(row) - turned(row + 1));
+  const double start = time_of(run, row) + part * (time_of(run, row + 1) - time_of(run, row));
+  return std::copysign(pitch, turned(row)) / 6 / (time_of(run, end) - start);  // deg/s in rpm
 }
 
 // Whether the speed, at the end of its change, has come to it.
