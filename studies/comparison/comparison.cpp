@@ -44,7 +44,7 @@ std::string small_components(const compare::Comparison& comparison) {
     auto& least = smallest[c.channel.quantity + "_" + c.channel.axis];
     if (least == nullptr || c.own_peak / c.peak < least->own_peak / least->peak) least = &c;
   }
-  const std::string text = joined(smallest, ", ", [](const auto& one) {
+  std::string text = joined(smallest, ", ", [](const auto& one) {
     return fmt::format("{} ({:.1e} of itself)", one.first,
                        one.second->allowed / one.second->own_peak);
   });
