@@ -113,7 +113,7 @@ namespace {
 
 // A key in small letters and without its unit: "Swash_Angle_deg" -> "swash_angle".
 std::string without_unit(const std::string& written) {
-  const std::string key = lower_case(written);
+  std::string key = lower_case(written);
   for (const char* const unit : {"_deg", "_rad", "_mm", "_m", "_bar", "_pa", "_mpa", "_rpm", "_kg"})
     if (key.ends_with(unit)) return key.substr(0, key.size() - std::string(unit).size());
   return key;
