@@ -786,8 +786,7 @@ ReferenceCurve read_reference_curve(const ReferenceDescription& description,
   const auto column_index = [&](const std::string& name) {
     const auto it = std::find(data.header.begin(), data.header.end(), name);
     if (it == data.header.end()) {
-      std::string all;
-      for (const auto& column : data.header) all += (all.empty() ? "" : ", ") + column;
+      std::string all = joined(data.header);
       if (all.size() > 200) all = all.substr(0, 200) + " ..";
       fail("has no column \"" + name + "\"; its columns are " + all);
     }

@@ -4,10 +4,13 @@
 
 #include <cmath>
 
+#include "bentaxis/designs/design_validity.h"
 #include "bentaxis/designs/evaluator.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/study/run.h"
+#include "bentaxis/study/turn_summary.h"
 #include "support.h"
 
 namespace bentaxis::designs {
@@ -65,6 +68,21 @@ TEST(Output, IsFoundByItsName) {
   EXPECT_THAT(refusal([&] { output("most:Td", base); }), testing::HasSubstr("no statistic"));
   EXPECT_THAT(refusal([&] { output("max:Rb3", base); }), testing::HasSubstr("did you mean"));
   for (const std::string& name : output_names(base)) EXPECT_EQ(output(name, base).name, name);
+}
+
+// As every other command says it: where any limit is violated, not one alone.
+TEST(DesignValidity, IsTheShareInWhichAnyLimitIsViolated) {
+  const Case still = read_case(kRated, {"operation.speed_rpm=0", "block.bottom_area_mm2=140",
+                                        "operation.samples_per_revolution=72"});
+  const DesignValidity found = validity_of(still);
+  const study::PreparedCase ready = study::prepare(still);
+  const auto limits = study::limits_of_turn(
+      ready.the_case, ready.assumptions(study::Model::analytic), ready.pressure);
+  EXPECT_EQ(found.text(), "not valid " + study::not_valid_text(limits));
+  double largest = 0;
+  for (const auto& limit : limits) largest = std::max(largest, limit.violated_share);
+  EXPECT_GT(found.share, largest + 0.1);
+  EXPECT_TRUE(validity_of(read_case(kRated)).valid());
 }
 
 // Against numbers of the tables that the outputs are of.

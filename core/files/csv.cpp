@@ -15,7 +15,9 @@
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/text.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/pump/words.h"
 #include "bentaxis/results/joint.h"
@@ -23,12 +25,6 @@
 
 namespace bentaxis {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
 
 std::vector<std::string_view> split(std::string_view line) {
   std::vector<std::string_view> fields;
@@ -151,10 +147,8 @@ PressureColumn find_column(const ForeignTable& table, const std::map<std::string
     }
   }
   if (found.size() == 1) return found.front();
-  std::string all;
-  for (const auto& column : table.header) all += (all.empty() ? "" : ", ") + column;
   throw InputError(table.file.string() + ": must have one column of " + what +
-                   " with its unit; its columns are " + all);
+                   " with its unit; its columns are " + joined(table.header));
 }
 
 }  // namespace
@@ -537,8 +531,7 @@ void write_csv(const MotionTable& table, const TextSink& write) {
   const auto& names = table.state_names;
   for (const std::string& name : names) text.piece += name + ",";
   for (std::size_t c = 0; c < results.columns(); ++c)
-    if (is_written(results, c) &&
-        std::find(names.begin(), names.end(), results.channels[c].name) == names.end()) {
+    if (is_written(results, c) && !contains(names, results.channels[c].name)) {
       columns.push_back(c);
       text.piece += results.channels[c].name + ",";
     }

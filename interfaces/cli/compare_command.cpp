@@ -8,6 +8,7 @@
 
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/csv.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/study/assumptions.h"
 #include "bentaxis/study/comparison.h"
 #include "bentaxis/study/comparison_document.h"
@@ -69,8 +70,7 @@ Case read_with(CaseOption of, const std::string& option,
   for (const std::string& text : assumptions) {
     if (!is_transfer(text)) continue;
     const std::string kind = text.substr(std::size(kTransfer) - 1);
-    const auto& names = transfer_names();
-    if (std::find(names.begin(), names.end(), kind) == names.end())
+    if (!contains(transfer_names(), kind))
       throw InputError(option + " " + text + ": must be " + all_transfers());
     of.changes.push_back("transfer.kind=" + kind);
   }

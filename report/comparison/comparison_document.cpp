@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "answers_text.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/report/text.h"
 #include "bentaxis/study/budget_section.h"
@@ -391,8 +392,7 @@ report::Curves comparison_curves(const ComparisonResult& r, const report::Docume
   std::vector<std::string> shown;
   for (const report::Figure& figure : *document.figures)
     if (const auto* content = std::get_if<report::ChannelFigure>(&figure.content))
-      for (const std::string& channel : content->channels)
-        if (std::find(shown.begin(), shown.end(), channel) == shown.end()) shown.push_back(channel);
+      for (const std::string& channel : content->channels) add_once(shown, channel);
   curves.reference = reference_curves(*r.with, shown);
   return curves;
 }

@@ -8,6 +8,7 @@
 
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/text.h"
 #include "document_parts.h"
 #include "sweep_sections.h"
 #include "sweep_view.h"
@@ -19,7 +20,7 @@ namespace {
 constexpr double kAtEnd = 1e-3;
 
 std::string with_unit(double value, const Output& output) {
-  return fmt::format("{:.5g}{}{}", value, output.unit.empty() ? "" : " ", output.unit);
+  return fmt::format("{:.5g}{}", value, unit_after(output.unit));
 }
 
 double measured(const Optimisation& found, std::size_t design, std::size_t output) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/text.h"
 #include "document_parts.h"
@@ -323,24 +324,21 @@ void append_limits(std::vector<std::string>& answers, const std::vector<DesignVa
                    const std::string& option, std::size_t every) {
   std::vector<std::string> keys;
   for (const DesignValidity& v : designs)
-    for (const std::string& key : v.keys)
-      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+    for (const std::string& key : v.keys) add_once(keys, key);
   if (keys.empty()) return;
-  std::string text;
-  for (const std::string& key : keys) {
-    text += text.empty() ? "" : ", ";
-    text += option == "--subject-to" ? fmt::format("--subject-to \"validity.{}.share <= 0\"", key)
-                                     : fmt::format("--output validity.{}.share", key);
-  }
+  const bool constrains = option == "--subject-to";
+  const std::string text = joined(keys, ", ", [&](const std::string& key) {
+    const std::string share = "validity." + key + ".share";
+    return option + (constrains ? " \"" + share + " <= 0\"" : " " + share);
+  });
   // What does not hold, of the design that is worst.
   const auto worst = std::max_element(
       designs.begin(), designs.end(),
       [](const DesignValidity& a, const DesignValidity& b) { return a.share < b.share; });
   for (const std::string& limit : worst->limits)
     answers.push_back(fmt::format("Design {}: {}", worst->design * every, limit));
-  answers.push_back(option == "--subject-to"
-                        ? fmt::format("To have valid designs only: {}.", text)
-                        : fmt::format("To see it for every design: {}.", text));
+  answers.push_back((constrains ? "To have valid designs only: " : "To see it for every design: ") +
+                    text + ".");
 }
 
 std::string headline(const SweepResult& result) {

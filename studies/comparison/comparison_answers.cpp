@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/study/engine_comparison.h"
 #include "bentaxis/study/lost_digits.h"
 #include "bentaxis/study/timing.h"
@@ -14,10 +15,6 @@
 
 namespace bentaxis::study {
 namespace {
-
-void append_all(std::vector<std::string>& sentences, std::vector<std::string> more) {
-  for (std::string& sentence : more) sentences.push_back(std::move(sentence));
-}
 
 const char* found_text(const Outcome& outcome) {
   switch (outcome.state) {
@@ -85,15 +82,15 @@ std::vector<std::string> comparison_answers(const ComparisonResult& r) {
         sentences.push_back(std::move(text));
   const PumpParameters& pump = r.first.the_case.pump;
   std::vector<std::string> of_turn = TurnSummary(r.analytic).answers();
-  append_all(of_turn, TransferSummary(pump, r.analytic).answers());
+  append(of_turn, TransferSummary(pump, r.analytic).answers());
   // Under unequal assumptions the other model's are others; in a smaller scene it has none.
   if (r.split || only_one_computed(r.comparison))
     for (std::string& sentence : of_turn)
       sentence.insert(0, r.split ? "By the analytic model: " : "By the analytic model alone: ");
-  append_all(sentences, std::move(of_turn));
+  append(sentences, std::move(of_turn));
   if (std::string play = free_play_answer(pump); !play.empty())
     sentences.push_back(std::move(play));
-  append_all(sentences, limit_answers(r.limits));
+  append(sentences, limit_answers(r.limits));
   if (r.first.hydraulics)
     sentences.push_back(timing_answer(timing_rows(r.first.the_case, *r.first.hydraulics)));
   if (std::string text = lost_digits_text(r.rounding); !text.empty())

@@ -59,11 +59,9 @@ DesignValidity validity_of(const Case& the_case) {
     const auto limits = study::limits_of_turn(
         ready.the_case, ready.assumptions(study::Model::analytic), ready.pressure);
     found.limits = study::limit_answers(limits);
+    found.share = analytic::share_beyond(limits);
     for (const analytic::ValidityLimit& limit : limits)
-      if (limit.applicable && limit.violated_share > 0) {
-        found.keys.push_back(limit.key);
-        found.share = std::max(found.share, limit.violated_share);
-      }
+      if (limit.applicable && limit.violated_share > 0) found.keys.push_back(limit.key);
   } catch (const InputError& error) {
     found.reason = error.what();
   } catch (const ComputationError& error) {

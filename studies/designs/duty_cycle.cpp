@@ -7,6 +7,7 @@
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/registry.h"
 #include "bentaxis/study/reporting.h"
@@ -60,7 +61,7 @@ DutyCycle read_duty_cycle(const std::filesystem::path& file, const Case& base) {
   duty.rows.clear();
   std::size_t share = table.header.size();
   // First, as a file without it is of another kind.
-  if (std::find(table.header.begin(), table.header.end(), kShare) == table.header.end())
+  if (!contains(table.header, kShare))
     throw InputError(file.string() + ":1: columns " + names_of(table.header) +
                      ": the column \"share\" is missing (share of the time of each row); a duty "
                      "cycle has it beside columns of parameters, such as speed_rpm or "

@@ -8,6 +8,7 @@
 #include "bentaxis/files/csv.h"
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/words.h"
 #include "bentaxis/results/channels.h"
 
@@ -183,15 +184,13 @@ void read_published_rows(TableReader in, const fs::path& folder, IdentificationD
     datum.variant = n.variant;
     datum.printed = n;
     datum.condition = index_of_condition(data, n.condition);
-    datum.use = std::find(fitted.begin(), fitted.end(), n.status) != fitted.end() ? Use::fitted
-                                                                                  : Use::predicted;
+    datum.use = contains(fitted, n.status) ? Use::fitted : Use::predicted;
     datum.reason = unfit(n);
     if (datum.condition == data.conditions.size()) {
       datum.condition = 0;
       datum.reason = "no [[condition]] \"" + n.condition + "\" is given";
     }
-    if (std::find(unused.begin(), unused.end(), n.quantity) != unused.end())
-      datum.reason = "left out by the file of data";
+    if (contains(unused, n.quantity)) datum.reason = "left out by the file of data";
     if (!datum.reason.empty()) datum.use = Use::left_out;
     datum.value = n.value;
     datum.low = n.low;

@@ -12,9 +12,11 @@
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/validity.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/periodic_spline.h"
 #include "bentaxis/pump/registry.h"
+#include "bentaxis/pump/text.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/samples.h"
 #include "bentaxis/study/timing.h"
@@ -272,9 +274,8 @@ std::string outside(const std::string& key, double value, double low, double hig
                     const std::string& unit, const std::string& why, const Slips& slips = {}) {
   if (value >= low && value <= high) return "";
   const bool below = value < low;
-  const std::string unit_text = unit.empty() ? "" : " " + unit;
   return fmt::format("{} = {:.6g} is {} {:.4g}{}: {}{}", key, value, below ? "below" : "above",
-                     below ? low : high, unit_text, why, guess(value, low, high, slips));
+                     below ? low : high, unit_after(unit), why, guess(value, low, high, slips));
 }
 
 // The same of a number of the case, as its file has it. Also "" where it is not there or unused.
@@ -1327,16 +1328,7 @@ bool is_code(const std::string& code) {
                      [&](const Check& check) { return check.code == code; });
 }
 
-bool is_timing_code(const std::string& code) {
-  const auto codes = timing_codes();
-  return std::find(codes.begin(), codes.end(), code) != codes.end();
-}
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
+bool is_timing_code(const std::string& code) { return contains(timing_codes(), code); }
 
 // "CODE: reason; CODE: reason"
 std::vector<PlausibilityWarning> stated(const Case& the_case) {
@@ -1344,12 +1336,13 @@ std::vector<PlausibilityWarning> stated(const Case& the_case) {
   const std::string& text = the_case.meant;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find(';', at), text.size());
-    const std::string part = trimmed(text.substr(at, end - at));
+    const std::string part(trimmed(std::string_view(text).substr(at, end - at)));
     at = end + 1;
     if (part.empty()) continue;
     const std::size_t colon = part.find(':');
-    const std::string code = trimmed(part.substr(0, colon));
-    const std::string reason = colon == std::string::npos ? "" : trimmed(part.substr(colon + 1));
+    const std::string code(trimmed(std::string_view(part).substr(0, colon)));
+    const std::string reason(
+        colon == std::string::npos ? "" : trimmed(std::string_view(part).substr(colon + 1)));
     const std::string where = the_case.file.string() + ": [plausibility] meant: ";
     if (!is_code(code) && !is_timing_code(code))
       throw InputError(where + "\"" + code +

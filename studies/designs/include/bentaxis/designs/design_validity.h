@@ -15,7 +15,7 @@ struct Optimisation;
 /// What the limits of validity say of a design, over the turn by the analytic model.
 struct DesignValidity {
   std::size_t design = 0;           ///< its row among the results
-  double share = 0;                 ///< of the turn, the largest in which a limit does not hold
+  double share = 0;                 ///< of the turn, in which any limit does not hold
   std::string where;                ///< operating point of it; "" without operating points
   std::vector<std::string> limits;  ///< what does not hold, each in a sentence
   std::vector<std::string> keys;    ///< of these: "film" of the output validity.film
