@@ -1005,9 +1005,8 @@ const Check kChecks[] = {
     {"gravity", "gravity that is not 0 and outside {0:g} .. {1:g} m/s2 (it acts along -y1)",
      "operation", "gravity_m_per_s2", [](const Facts& f) { return f.pump.gravity != 0; }},
     {"samples",
-     "fewer than 6 or more than 1e6 angles in a turn, or more than 1e4 revolutions. Also so much "
-     "in "
-     "common with N that the N pistons are seen in fewer than 6 positions",
+     "fewer than 6 or more than 1e6 angles in a turn, or more than 1e4 revolutions, or angles at "
+     "which the N pistons stand in fewer than 6 different positions",
      [](const Facts& f) {
        return first_of({implausible(f, "operation", "samples_per_revolution"),
                         implausible(f, "operation", "revolutions"), repeated_samples(f)});
@@ -1100,9 +1099,8 @@ const Check kChecks[] = {
                 "absolute vacuum is at -1.013, and a spline may leave its points by a tenth of "
                 "delivery_bar",
                 f.turn->highest_pressure < -f.turn->lowest_pressure / 2 ? Slips{kSign} : Slips{}),
-            outside("[pressure] file: its work over a turn, over the ideal one,",
-                    f.turn->work_ratio, -HUGE_VAL, 1.5, "",
-                    fmt::format("delivery_bar = {:.6g}", delivery))});
+            outside("[pressure] file: its work in a turn over the ideal work", f.turn->work_ratio,
+                    -HUGE_VAL, 1.5, "", fmt::format("with delivery_bar = {:.6g}", delivery))});
      }},
     // Port plate
     {"lands-off-bores",
