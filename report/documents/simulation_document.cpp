@@ -532,8 +532,9 @@ std::vector<std::string> answers_of(const MotionAnswers& a) {
             ? ""
             : fmt::format(", the change from {:.5g} to {:.5g} rpm,", a.first_rpm, a.end_rpm),
         milliseconds(*a.reached_s),
-        a.settled ? ""
-                  : "; the speed still changes at the end: a longer simulation gives other numbers"));
+        a.settled
+            ? ""
+            : "; the speed still changes at the end: a longer simulation gives other numbers"));
   if (a.backwards)
     answers.push_back(fmt::format("The shaft also turns backwards: up to {:.4g} rpm at {}.",
                                   a.backwards->rpm, milliseconds(a.backwards->at_s)));
