@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "bentaxis/analytic/constant_speed.h"
 #include "bentaxis/analytic/teeth.h"
@@ -57,8 +58,14 @@ void describe_flanks(ValidityLimit& flank, const Model& model, bool two, double 
   const Model::FlankChange change = model.flank_change(furthest, omega);
   const bool differs = change.tapered > 0;
   if (two) {
+    // Modelled too: nothing is beyond what the model says.
+    const double share = std::exchange(flank.violated_share, 0);
+    for (ValidityLimit::Row& row : flank.rows)
+      if (row == ValidityLimit::Row::violated) row = ValidityLimit::Row::holds;
     flank.consequence =
-        "where it is negative the other flank is loaded; each flank pushes the gears apart" +
+        "where Rcs is negative, " +
+        (share > 0 ? rounded_text(100 * share, 3) + " % of the turn" : "nowhere here") +
+        ", the other flank is loaded; each flank pushes the gears apart" +
         (differs
              ? ". With one line of action for both, as printed in the paper, " + flank_text(change)
              : std::string());
@@ -161,7 +168,7 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
 
   const bool two = the_case.pump.gear.flanks == Flanks::two;
   ValidityLimit flank;
-  flank.limit = two ? "tooth force on the driving flank: Rcs >= 0"
+  flank.limit = two ? "tooth force on a modelled flank: both are"
                     : "tooth force on the modelled flank: Rcs >= 0";
   flank.name = "Rcs < 0";
   flank.key = "flank";

@@ -83,7 +83,7 @@ void compare_channel(const ResultTable& first, std::size_t a, const ResultTable&
                      std::size_t b, const Options& options, ChannelComparison& result) {
   std::size_t both = 0;
   double square = 0;
-  double beyond = 0, uncertainty_there = 0;
+  double share = 0, uncertainty_there = 0;  // at the row nearest to its limit, or furthest beyond
   const std::size_t off =
       options.uncertainty ? options.uncertainty->find(first.channels[a].name) : 0;
   const bool uncertain = options.uncertainty && off < options.uncertainty->columns();
@@ -104,8 +104,9 @@ void compare_channel(const ResultTable& first, std::size_t a, const ResultTable&
     result.mean[1] += y;
     result.mean_difference += difference;
     const double uncertainty = uncertain ? options.uncertainty->at(row, off) : 0;
-    if (both == 1 || !(std::abs(difference) - uncertainty <= beyond)) {
-      beyond = std::abs(difference) - uncertainty;
+    const Difference here{std::abs(difference), result.allowed + uncertainty, Comparable::yes};
+    if (both == 1 || !(here.share() <= share)) {
+      share = here.share();
       uncertainty_there = uncertainty;
       result.largest = std::abs(difference);
       result.theta_of_largest_deg = first.theta_deg[row];

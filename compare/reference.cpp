@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <list>
 #include <map>
 #include <set>
 
@@ -219,7 +220,10 @@ bool ends_its_last_line(const fs::path& file) {
 
 // Index of an angle among rising ones, or their number.
 std::size_t find_angle(const std::vector<double>& theta, double angle, double same) {
-  const auto it = std::lower_bound(theta.begin(), theta.end(), angle - same);
+  auto it = std::lower_bound(theta.begin(), theta.end(), angle - same);
+  while (it != theta.end() && it + 1 != theta.end() &&
+         std::abs(*(it + 1) - angle) < std::abs(*it - angle))
+    ++it;  // the nearest
   if (it != theta.end() && *it <= angle + same) return static_cast<std::size_t>(it - theta.begin());
   if (angle + 360 - theta.back() <= same) return theta.size() - 1;  // 359.9999, rounded, is 0
   return theta.size();
@@ -430,6 +434,45 @@ struct Resampled {
   double error = 0;
 };
 
+// From each point to the next, the last of a turn to the first.
+double step_after(const std::vector<double>& theta, std::size_t i) {
+  return i + 1 < theta.size() ? theta[i + 1] - theta[i] : theta.front() + 360 - theta.back();
+}
+
+void require_no_wide_gap(const ReferenceCurve& curve) {
+  const std::vector<double>& theta = curve.table.theta_deg;
+  for (std::size_t i = 0; i < theta.size(); ++i)
+    if (const double gap = step_after(theta, i); gap > kLargestGap)
+      throw InputError(curve.file.string() + ": has no points between " + number_text(theta[i]) +
+                       " and " + number_text(theta[i] + gap) +
+                       " deg (shaft angle): must cover the turn with gaps of at most " +
+                       number_text(kLargestGap) + " deg");
+}
+
+// Whether a curve has points at all of these angles.
+bool covers(const ReferenceCurve& curve, const std::vector<double>& theta_deg) {
+  return std::all_of(theta_deg.begin(), theta_deg.end(), [&](double angle) {
+    return find_angle(curve.table.theta_deg, reduced(angle), kSameAngle) <
+           curve.table.theta_deg.size();
+  });
+}
+
+// Values of the band that a curve spans around angles: what it has at its points there and on the
+// straight lines between.
+struct Span {
+  double low, high;
+};
+Span span_of(const std::vector<double>& values, const std::vector<Between>& near, double middle) {
+  Span span{middle, middle};
+  for (const Between& point : near) {
+    const double value =
+        values[point.first] + point.share * (values[point.next] - values[point.first]);
+    span.low = std::min(span.low, value);
+    span.high = std::max(span.high, value);
+  }
+  return span;
+}
+
 Resampled resample(const ReferenceDescription& description, const ReferenceCurve& curve,
                    const std::vector<double>& theta_deg) {
   Resampled out;
@@ -445,16 +488,7 @@ Resampled resample(const ReferenceDescription& description, const ReferenceCurve
     at.push_back(find_angle(theta, reduced(angle), std::max(kSameAngle, curve.angle_rounding_deg)));
   out.exact = std::all_of(at.begin(), at.end(), [&](std::size_t i) { return i < theta.size(); });
   const bool tube = description.tube_deg > 0;
-  if (!out.exact || tube)
-    for (std::size_t i = 0; i < theta.size(); ++i) {
-      const double gap =
-          i + 1 < theta.size() ? theta[i + 1] - theta[i] : theta.front() + 360 - theta.back();
-      if (gap > kLargestGap)
-        throw InputError(curve.file.string() + ": has no points between " + number_text(theta[i]) +
-                         " and " + number_text(theta[i] + gap) +
-                         " deg (shaft angle): must cover the turn with gaps of at most " +
-                         number_text(kLargestGap) + " deg to be resampled");
-    }
+  if (!out.exact || tube) require_no_wide_gap(curve);
   if (tube)
     for (const double angle : theta_deg)
       near.push_back(points_near(theta, reduced(angle), description.tube_deg));
@@ -486,15 +520,9 @@ Resampled resample(const ReferenceDescription& description, const ReferenceCurve
           uncertainty += std::abs((*spline)(theta_deg[row] + by) - (*spline)(theta_deg[row])) / 2;
       if (peak > 0) out.error = std::max(out.error, uncertainty / peak);
       if (!tube) continue;
-      double low = table.values[index], high = low;
-      for (const auto& point : near[row]) {
-        const double value =
-            values[point.first] + point.share * (values[point.next] - values[point.first]);
-        low = std::min(low, value);
-        high = std::max(high, value);
-      }
-      out.low.values[index] = low;
-      out.high.values[index] = high;
+      const Span span = span_of(values, near[row], table.values[index]);
+      out.low.values[index] = span.low;
+      out.high.values[index] = span.high;
     }
   }
   return out;
@@ -510,6 +538,219 @@ void append_columns(ResultTable& table, const ResultTable& more) {
   table.values = std::move(values);
   append(table.channels, more.channels);
   table.theta_deg = more.theta_deg;
+}
+
+// A reference and what is held to it, at the same angles.
+struct Held {
+  Resampled reference;
+  const ResultTable* result = nullptr;
+
+  void add(const Resampled& more) {
+    append_columns(reference.middle, more.middle);
+    append_columns(reference.low, more.low);
+    append_columns(reference.high, more.high);
+    append_columns(reference.uncertainty, more.uncertainty);
+    reference.exact = reference.exact && more.exact;
+    reference.error = std::max(reference.error, more.error);
+  }
+};
+
+// How far a model's values may be off because the angles of a curve are rounded.
+ResultTable changes_within(double rounding_deg, const ResultTable& result,
+                           const std::vector<double>& theta_deg, const ResultTable& curve,
+                           const ResultAt& result_at) {
+  ResultTable changes = curve;
+  changes.values.assign(curve.values.size(), 0);
+  if (rounding_deg <= 0) return changes;
+  for (const double by : {-rounding_deg, rounding_deg}) {
+    std::vector<double> moved = theta_deg;
+    for (double& angle : moved) angle += by;
+    const ResultTable there = result_at(moved);
+    for (std::size_t c = 0; c < changes.columns(); ++c) {
+      const std::size_t column = there.find(changes.channels[c].name);
+      if (column == there.columns()) continue;
+      for (std::size_t row = 0; row < changes.rows(); ++row) {
+        double& change = changes.values[row * changes.columns() + c];
+        const double found = std::abs(there.at(row, column) - result.at(row, column));
+        if (is_computed(found)) change = std::max(change, found);
+      }
+    }
+  }
+  return changes;
+}
+
+// A curve as it stands.
+Resampled at_own_angles(const ReferenceDescription& description, const ReferenceCurve& curve,
+                        const ResultTable& result, const ResultAt& result_at) {
+  Resampled out;
+  const std::vector<double>& theta = curve.table.theta_deg;
+  out.middle = curve.table;
+  out.middle.name = "reference";
+  out.middle.theta_deg = result.theta_deg;
+  out.low = out.high = out.middle;
+  out.uncertainty = changes_within(curve.angle_rounding_deg, result, theta, out.middle, result_at);
+  if (description.tube_deg <= 0) return out;
+  std::vector<std::vector<Between>> near;
+  for (const double angle : theta) near.push_back(points_near(theta, angle, description.tube_deg));
+  for (std::size_t column = 0; column < out.middle.columns(); ++column) {
+    const std::vector<double> values = column_of(curve.table, column);
+    const auto known = std::count_if(values.begin(), values.end(), is_computed);
+    if (known > 0 && known < static_cast<std::ptrdiff_t>(values.size()))
+      throw InputError(curve.file.string() + ": column of " + out.middle.channels[column].name +
+                       " has empty fields: there is no tube_deg around them");
+    if (known == 0) continue;
+    for (std::size_t row = 0; row < theta.size(); ++row) {
+      const Span span = span_of(values, near[row], values[row]);
+      out.low.values[row * out.low.columns() + column] = span.low;
+      out.high.values[row * out.high.columns() + column] = span.high;
+    }
+  }
+  return out;
+}
+
+// Where a curve has no points over several of its steps.
+void add_gaps(const ReferenceCurve& curve, std::vector<Judgement::Gap>& gaps) {
+  constexpr double kManySteps = 3;
+  const std::vector<double>& theta = curve.table.theta_deg;
+  std::vector<double> steps;
+  for (std::size_t i = 0; i < theta.size(); ++i) steps.push_back(step_after(theta, i));
+  std::vector<double> sorted = steps;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                   sorted.end());
+  const double usual = sorted[sorted.size() / 2];
+  for (std::size_t i = 0; i < theta.size(); ++i)
+    if (steps[i] > kManySteps * usual) gaps.push_back({theta[i], theta[i] + steps[i]});
+}
+
+// Tables of different columns as one: at all their angles, not computed where one has none.
+// @param of  which of those of one that is held
+template <class Of>
+ResultTable united(const std::vector<Held>& held, const Of& of) {
+  std::set<double> angles;
+  for (const Held& one : held)
+    angles.insert(one.result->theta_deg.begin(), one.result->theta_deg.end());
+  ResultTable table = of(held.front());
+  table.channels.clear();
+  table.theta_deg.assign(angles.begin(), angles.end());
+  for (const Held& one : held) append(table.channels, of(one).channels);
+  table.values.assign(table.rows() * table.columns(), not_computed());
+  std::size_t first = 0;
+  for (const Held& one : held) {
+    const ResultTable& its = of(one);
+    for (std::size_t row = 0; row < its.rows(); ++row) {
+      const auto at =
+          std::lower_bound(table.theta_deg.begin(), table.theta_deg.end(), its.theta_deg[row]) -
+          table.theta_deg.begin();
+      for (std::size_t c = 0; c < its.columns(); ++c)
+        table.values[static_cast<std::size_t>(at) * table.columns() + first + c] = its.at(row, c);
+    }
+    first += its.columns();
+  }
+  return table;
+}
+
+// What the comparisons of all curves with a model come to.
+class Judge {
+ public:
+  Judge(const ReferenceDescription& description, const std::vector<Held>& held,
+        const ZeroScales& zero_scales)
+      : description_(description) {
+    Options options;
+    options.tolerance = description.relative;
+    options.absolute = description.absolute;
+    options.zero_scales = zero_scales;
+    options.most_digits = std::min(options.most_digits, static_cast<double>(description.digits));
+    for (const Held& one : held) {
+      if (description.tube_deg > 0) options.band = Band{&one.reference.low, &one.reference.high};
+      options.uncertainty = &one.reference.uncertainty;
+      parts_.push_back({&one, compare_tables(one.reference.middle, *one.result, options),
+                        Hints(one.reference.middle, *one.result)});
+    }
+  }
+
+  ReferenceChannel found(const Channel& channel, std::size_t column) const {
+    const Part& part = part_of(channel.name);
+    const ResultTable& result = *part.held->result;
+    ReferenceChannel entry;
+    if (const auto* found = part.comparison.find(channel.name)) entry.comparison = *found;
+    entry.comparison.channel = channel;
+    const bool computed = any_computed(result, column);
+    if (!has(part, channel.name)) {
+      const bool wanted =
+          description_.must_be_complete() && channel.kind == ChannelKind::reaction && computed;
+      entry.finding = !computed ? Finding::absent : wanted ? Finding::incomplete : Finding::missing;
+      if (wanted) entry.hint = "the reference does not have it";
+    } else if (!entry.comparison.compared()) {
+      entry.finding = Finding::incomplete;
+      entry.hint = computed ? "one of them has gaps where the other has values"
+                            : "the model did not compute it";
+    } else {
+      const bool agrees = entry.comparison.verdict == Verdict::agrees;
+      entry.finding = agrees ? Finding::agrees : Finding::differs;
+      if (!agrees) entry.hint = part.hints.of(entry.comparison);
+    }
+    return entry;
+  }
+
+  bool has(const std::string& channel) const { return has(part_of(channel), channel); }
+
+ private:
+  struct Part {
+    const Held* held;
+    Comparison comparison;
+    Hints hints;
+  };
+  static bool has(const Part& part, const std::string& channel) {
+    const ResultTable& reference = part.held->reference.middle;
+    return any_computed(reference, reference.find(channel));
+  }
+  // That has a curve of it, or the first.
+  const Part& part_of(const std::string& channel) const {
+    const auto it = std::find_if(parts_.begin(), parts_.end(),
+                                 [&](const Part& part) { return has(part, channel); });
+    return it == parts_.end() ? parts_.front() : *it;
+  }
+
+  const ReferenceDescription& description_;
+  std::vector<Part> parts_;
+};
+
+Judgement judged(const ReferenceDescription& description, const std::vector<Held>& held,
+                 const ZeroScales& zero_scales) {
+  Judgement judgement;
+  if (held.empty()) return judgement;
+  const ResultTable& result = *held.front().result;
+  const Judge judge(description, held, zero_scales);
+  for (std::size_t column = 0; column < result.columns(); ++column) {
+    const Channel& channel = result.channels[column];
+    if (channel.kind == ChannelKind::check ||
+        (channel.kind == ChannelKind::input && !judge.has(channel.name)))
+      continue;
+    judgement.channels.push_back(judge.found(channel, column));
+  }
+  for (const Held& one : held) {
+    judgement.resampled = judgement.resampled || !one.reference.exact;
+    judgement.resampling_error = std::max(judgement.resampling_error, one.reference.error);
+  }
+  const auto all = [&](const auto& of) {
+    return held.size() == 1 ? of(held.front()) : united(held, of);
+  };
+  judgement.reference = all([](const Held& one) { return one.reference.middle; });
+  judgement.resampling = all([](const Held& one) { return one.reference.uncertainty; });
+  if (description.tube_deg > 0) {
+    judgement.low = all([](const Held& one) { return one.reference.low; });
+    judgement.high = all([](const Held& one) { return one.reference.high; });
+  }
+  return judgement;
+}
+
+void require_one_curve_each(const std::vector<ReferenceCurve>& curves) {
+  std::set<std::string> names;
+  for (const ReferenceCurve& curve : curves)
+    for (const Channel& channel : curve.table.channels)
+      if (!names.insert(channel.name).second)
+        throw InputError(curve.file.string() + ": holds " + channel.name +
+                         ", as does another curve for the same model");
 }
 
 }  // namespace
@@ -560,6 +801,12 @@ Turn one_turn(const std::string& file, const AngleMap& map, const std::vector<do
   if (scale == 0) fail("column " + map.column + " is a time, but the shaft of the case is at rest");
   if (points.size() > 1 && points.back().first < points.front().first)
     std::reverse(points.begin(), points.end());
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if (const double step = points[i].first - points[i - 1].first;
+        step > 0 && map.rounding_deg > step / 2 + kSameAngle)
+      fail("[curve.angle] rounding_deg = " + number_text(map.rounding_deg) +
+           ": must be at most half of the smallest step between two angles, " +
+           number_text(rounded(step, 6)) + " deg");
   for (std::size_t i = 1; i < points.size(); ++i)
     if (!(points[i].first > points[i - 1].first))
       throw InputError(place(points[i].second) + ": angles in column " + map.column +
@@ -634,6 +881,13 @@ std::vector<std::string> assumptions_of(const CurveDescription& curve) {
   if (!curve.vectors.empty())
     lines.push_back("assumed: the vectors of the file are given in " +
                     (curve.frame.words.empty() ? "the axes of each reaction" : curve.frame.words));
+  if (curve.vectors.size() > 1 &&
+      std::all_of(curve.vectors.begin(), curve.vectors.end(),
+                  [](const VectorMap& vector) { return vector.factor < 0; }))
+    lines.push_back(
+        "assumed: every vector has the sign -1, the force on the other body; vectors in "
+        "left-handed "
+        "axes look the same");
   std::map<std::string, std::string> meanings;  // "x -1, kN" -> columns
   const auto add = [&](const std::string& theirs, const std::string& ours, double factor,
                        const std::string& unit) {
@@ -945,78 +1199,69 @@ ReferenceCurve read_reference_curve(const ReferenceDescription& description,
       const double allowed = description.relative * table.peak(table.channels[c].group) +
                              (absolute == description.absolute.end() ? 0 : absolute->second);
       if (is_computed(start) && is_computed(again) && std::abs(again - start) > allowed)
-        fail("column \"" + data.header[sources[c].front().first] +
-             "\" has different values at the start and the end of the turn: the record is not "
-             "periodic");
+        throw InputError(
+            place(turn.repeated->second) + ": column \"" + data.header[sources[c].front().first] +
+            "\" = " + number_text(again) + " a turn after " + number_text(start) +
+            ": the record is not periodic (allowed: " + number_text(rounded(allowed, 3)) + " " +
+            table.channels[c].unit + ")");
     }
   }
   return out;
 }
 
+std::optional<ResultTable> rows_at(const ResultTable& table, const std::vector<double>& theta_deg) {
+  std::vector<std::size_t> rows;
+  for (const double angle : theta_deg) {
+    rows.push_back(table.rows() > 0 ? find_angle(table.theta_deg, angle, kSameAngle) : 0);
+    if (rows.back() == table.rows()) return std::nullopt;
+  }
+  return select_rows(table, rows);
+}
+
+Judgement judge(const ReferenceDescription& description, const std::vector<ReferenceCurve>& curves,
+                const ResultAt& result_at, const std::vector<double>& case_theta_deg,
+                const ZeroScales& zero_scales) {
+  require_one_curve_each(curves);
+  std::vector<Held> held;
+  std::list<ResultTable> results;            // of each
+  std::vector<const ReferenceCurve*> first;  // of each
+  std::vector<Judgement::Gap> gaps;
+  for (const ReferenceCurve& curve : curves) {
+    if (description.tube_deg > 0 || !covers(curve, case_theta_deg)) require_no_wide_gap(curve);
+    const auto same = std::find_if(first.begin(), first.end(), [&](const ReferenceCurve* other) {
+      return other->table.theta_deg == curve.table.theta_deg;
+    });
+    if (same != first.end()) {
+      Held& one = held[static_cast<std::size_t>(same - first.begin())];
+      one.add(at_own_angles(description, curve, *one.result, result_at));
+      continue;
+    }
+    first.push_back(&curve);
+    add_gaps(curve, gaps);
+    const ResultTable& result = results.emplace_back(result_at(curve.table.theta_deg));
+    held.push_back({at_own_angles(description, curve, result, result_at), &result});
+  }
+  std::vector<double> all;
+  for (const ReferenceCurve* curve : first) append(all, curve->table.theta_deg);
+  Judgement judgement = judged(description, held, zero_scales);
+  judgement.result =
+      results.size() == 1 ? std::move(results.front()) : result_at(judgement.reference.theta_deg);
+  judgement.at_own_angles = std::any_of(all.begin(), all.end(), [&](double angle) {
+    return find_angle(case_theta_deg, angle, kSameAngle) == case_theta_deg.size();
+  });
+  judgement.gaps = std::move(gaps);
+  return judgement;
+}
+
 Judgement judge(const ReferenceDescription& description, const std::vector<ReferenceCurve>& curves,
                 const ResultTable& result, const ZeroScales& zero_scales) {
-  Resampled reference;
-  for (const ReferenceCurve& curve : curves) {
-    const Resampled one = resample(description, curve, result.theta_deg);
-    for (const Channel& channel : one.middle.channels)
-      if (reference.middle.find(channel.name) < reference.middle.columns())
-        throw InputError(curve.file.string() + ": holds " + channel.name +
-                         ", as does another curve for the same model");
-    append_columns(reference.middle, one.middle);
-    append_columns(reference.low, one.low);
-    append_columns(reference.high, one.high);
-    append_columns(reference.uncertainty, one.uncertainty);
-    reference.exact = reference.exact && one.exact;
-    reference.error = std::max(reference.error, one.error);
-  }
-  reference.middle.name = "reference";
-  Options options;
-  options.tolerance = description.relative;
-  options.absolute = description.absolute;
-  options.zero_scales = zero_scales;
-  options.most_digits = std::min(options.most_digits, static_cast<double>(description.digits));
-  if (description.tube_deg > 0) options.band = Band{&reference.low, &reference.high};
-  options.uncertainty = &reference.uncertainty;
-  const Comparison comparison = compare_tables(reference.middle, result, options);
-  const Hints hints(reference.middle, result);
-
-  Judgement judgement;
-  judgement.resampled = !reference.exact;
-  judgement.resampling_error = reference.error;
-  for (std::size_t column = 0; column < result.columns(); ++column) {
-    const Channel& channel = result.channels[column];
-    const std::size_t stored = reference.middle.find(channel.name);
-    const bool there = any_computed(reference.middle, stored);
-    if (channel.kind == ChannelKind::check || (channel.kind == ChannelKind::input && !there))
-      continue;
-    ReferenceChannel entry;
-    if (const auto* found = comparison.find(channel.name)) entry.comparison = *found;
-    entry.comparison.channel = channel;
-    if (!there) {
-      const bool wanted = description.must_be_complete() && channel.kind == ChannelKind::reaction &&
-                          any_computed(result, column);
-      entry.finding = !any_computed(result, column) ? Finding::absent
-                      : wanted                      ? Finding::incomplete
-                                                    : Finding::missing;
-      if (wanted) entry.hint = "the reference does not have it";
-    } else if (!entry.comparison.compared()) {
-      entry.finding = Finding::incomplete;
-      entry.hint = any_computed(result, column) ? "one of them has gaps where the other has values"
-                                                : "the model did not compute it";
-    } else {
-      const bool agrees = entry.comparison.verdict == Verdict::agrees;
-      entry.finding = agrees ? Finding::agrees : Finding::differs;
-      if (!agrees) entry.hint = hints.of(entry.comparison);
-    }
-    judgement.channels.push_back(std::move(entry));
-  }
-  judgement.reference = std::move(reference.middle);
-  judgement.resampling = std::move(reference.uncertainty);
-  if (description.tube_deg > 0) {
-    judgement.low = std::move(reference.low);
-    judgement.high = std::move(reference.high);
-  }
-  return judgement;
+  require_one_curve_each(curves);
+  std::vector<Held> held(1);
+  held.front().result = &result;
+  for (const ReferenceCurve& curve : curves)
+    held.front().add(resample(description, curve, result.theta_deg));
+  held.front().reference.middle.name = "reference";
+  return judged(description, held, zero_scales);
 }
 
 }  // namespace bentaxis::compare

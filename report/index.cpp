@@ -195,7 +195,7 @@ std::optional<IndexEntry> index_entry(const std::string& json_text) {
   entry.date = text_in(provenance, "date");
   entry.version = text_in(provenance, "version");
   const Json& verdict = member(json, "verdict");
-  // The worst decides, of a report that says it part by part too (before 1.0.1).
+  // The worst decides, of a report that says it part by part too (before 1.1.0).
   for (const Json* part : {&verdict, &member(verdict, "reference")})
     if (const Json& agrees = member(*part, "agrees"); agrees.is_boolean())
       entry.agrees = entry.agrees.value_or(true) && agrees.get<bool>();

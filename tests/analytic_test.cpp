@@ -648,6 +648,16 @@ TEST(Validity, ShareIsOfTheAnglesThatAreComputed) {
   EXPECT_DOUBLE_EQ(flank().violated_share, 0.2);
   EXPECT_EQ(flank().worst, -3);
   EXPECT_DOUBLE_EQ(flank().theta_deg, 150);
+  EXPECT_DOUBLE_EQ(analytic::share_beyond({flank()}), 0.2);
+  // With both flanks modelled nothing is beyond the model.
+  the_case.pump.gear.flanks = Flanks::two;
+  EXPECT_TRUE(flank().applicable);
+  EXPECT_EQ(flank().violated_share, 0);
+  EXPECT_EQ(analytic::share_beyond({flank()}), 0);
+  EXPECT_EQ(flank().worst, -3);
+  EXPECT_NE(flank().consequence.find("negative, 20 % of the turn"), std::string::npos)
+      << flank().consequence;
+  the_case.pump.gear.flanks = Flanks::one;
   for (std::size_t row = 0; row < 12; ++row) set(row, not_computed());
   EXPECT_FALSE(flank().applicable);
 }

@@ -367,8 +367,10 @@ TEST(Verdict, AnUncertaintyExcusesWhereItIsAndByItsSize) {
   EXPECT_EQ(excused.largest, 3);
   EXPECT_EQ(excused.theta_of_largest_deg, 90);
   EXPECT_NEAR(excused.allowed, 3.01, 1e-12);
-  // What is left of it is largest elsewhere.
-  EXPECT_EQ(judged(2.9, 0.1).largest, 0.5);
+  // The row that is nearest to its own limit counts: an excuse far above a difference hides no
+  // other.
+  EXPECT_EQ(judged(2.9, 0.1).largest, 3);
+  EXPECT_EQ(judged(20, 0.1).largest, 0.5);
 }
 
 TEST(Verdict, DigitsAreThoseOfTheLargestDifferenceOverThePeak) {

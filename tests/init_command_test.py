@@ -187,7 +187,7 @@ class InitTest(ProgramTest):
 
     def test_the_package_that_is_installed(self):
         project = self.project()
-        (project / "packages" / "bentaxis_1.0.1_amd64.deb").touch()
+        (project / "packages" / "bentaxis_1.1.0_amd64.deb").touch()
         other = self.folder / "other.deb"
         other.touch()
         said = self.folder / "said"
@@ -199,7 +199,7 @@ class InitTest(ProgramTest):
         install = [step["run"] for step in github["jobs"]["regress"]["steps"] if step.get("name") == "install"]
         gitlab = yaml.safe_load((project / GITLAB).read_text())["regress"]["before_script"]
         for commands in (install, ["\n".join(gitlab)]):
-            for variable, package in (("", project / "packages" / "bentaxis_1.0.1_amd64.deb"), (str(other), other)):
+            for variable, package in (("", project / "packages" / "bentaxis_1.1.0_amd64.deb"), (str(other), other)):
                 said.unlink(missing_ok=True)
                 environment = {**os.environ, "PATH": f"{self.folder / 'bin'}:{os.environ['PATH']}", "BENTAXIS_PACKAGE": variable}
                 subprocess.run(["bash", "-ec", commands[0]], cwd=project, env=environment, check=True)

@@ -16,6 +16,8 @@
 #include "bentaxis/pump/unit_of_measure.h"
 #include "bentaxis/pump/words.h"
 #include "bentaxis/results/load_scale.h"
+#include "bentaxis/results/periodic_lines.h"
+#include "bentaxis/results/samples.h"
 #include "closed_form/film.h"
 #include "loads/film.h"
 #include "support.h"
@@ -602,6 +604,23 @@ TEST(Samples, PartsOfARunAreItsRows) {
   EXPECT_EQ(part.chamber_pressure, std::vector<double>(first, first + 4 * all.pistons));
   EXPECT_EQ(sample_case(c, pressure, 2, false, {8, 100}).theta_deg.size(), 2U);
   EXPECT_TRUE(sample_case(c, pressure, 2, false, {2, 0}).theta_deg.empty());
+  // At given angles the same.
+  const Samples some = sample_angles(c, pressure, {all.theta_deg[3], all.theta_deg[1]});
+  EXPECT_EQ(some.theta_deg, (std::vector<double>{all.theta_deg[3], all.theta_deg[1]}));
+  EXPECT_EQ(some.omega, all.omega);
+  for (int k = 0; k < all.pistons; ++k) {
+    EXPECT_EQ(some.chamber_pressure[k], all.chamber_pressure[3 * all.pistons + k]);
+    EXPECT_EQ(some.chamber_pressure[all.pistons + k], all.chamber_pressure[all.pistons + k]);
+  }
+}
+
+TEST(PeriodicLines, GoThroughThePointsAndAcrossTheEndOfTheTurn) {
+  const std::vector<double> theta = {350, 10, 100, 200}, values = {1, 3, 12, not_computed()};
+  EXPECT_EQ(on_lines(theta, values, theta), (std::vector<double>{1, 3, 12, 8}));
+  EXPECT_EQ(on_lines(theta, values, {0, 360, -5, 55, 375, 225}),
+            (std::vector<double>{2, 2, 1.5, 7.5, 3.5, 6.5}));
+  EXPECT_EQ(on_lines({40}, {7}, {0, 40, 300}), (std::vector<double>{7, 7, 7}));
+  EXPECT_FALSE(is_computed(on_lines({40}, {not_computed()}, {40}).at(0)));
 }
 
 // More rows than are held at a time; a sink that is given too many ends it.

@@ -49,17 +49,23 @@ double x_of(double deg) { return 100 * wave(deg, 3) + 20 * wave(deg, 1, 30); }
 double y_of(double deg) { return 80 * wave(deg, 2, 17) + 10; }
 double t_of(double deg) { return 50 + 5 * wave(deg, 5); }
 
-ResultTable result(int samples) {
+ResultTable result_at(const std::vector<double>& theta_deg) {
   ResultTable t;
   t.name = "model";
   t.channels = kChannels;
-  for (int i = 0; i < samples; ++i) {
-    const double deg = 360.0 * i / samples;
-    t.theta_deg.push_back(deg);
+  t.theta_deg = theta_deg;
+  for (const double deg : theta_deg)
     for (const double value : {x_of(deg), y_of(deg), t_of(deg)}) t.values.push_back(value);
-  }
   return t;
 }
+
+std::vector<double> angles(int samples) {
+  std::vector<double> all;
+  for (int i = 0; i < samples; ++i) all.push_back(360.0 * i / samples);
+  return all;
+}
+
+ResultTable result(int samples) { return result_at(angles(samples)); }
 
 std::string thrown(const std::function<void()>& call) {
   try {
@@ -223,6 +229,142 @@ TEST_F(ReferenceFolder, JumpIsResampledWithTheUncertaintyItHas) {
     fine.values[3 * 400] += 0.002 * 120;
     EXPECT_EQ(finding(judge(d, {curve(d)}, fine, {}), "X_x_N"), Finding::differs) << reversal;
   }
+}
+
+// A model that can be run anywhere is held to a record where that has points.
+class OwnAngles : public ReferenceFolder {
+ protected:
+  Judgement judged(const ReferenceDescription& d, const ResultAt& model = result_at) const {
+    return judge(d, {curve(d)}, model, angles(360), {});
+  }
+};
+
+TEST_F(OwnAngles, NothingIsResampledAndNothingForgiven) {
+  for (const int rows : {14, 50, 77, 720}) {
+    write_plain(rows);
+    const auto d = description(rows, "", "relative = 1e-10");
+    const Judgement j = judged(d);
+    EXPECT_TRUE(j.agrees());
+    EXPECT_FALSE(j.resampled);
+    EXPECT_TRUE(j.at_own_angles);
+    EXPECT_TRUE(j.gaps.empty());
+    EXPECT_EQ(j.reference.rows(), static_cast<std::size_t>(rows));
+    EXPECT_EQ(j.result.theta_deg, j.reference.theta_deg);
+    for (const auto& c : j.channels) EXPECT_EQ(c.comparison.largest, 0);
+  }
+  write_plain(72);  // a fifth of the case's own
+  EXPECT_FALSE(judged(description(72)).at_own_angles);
+}
+
+TEST_F(OwnAngles, OneWrongValueOfARoughRecordIsFoundWithItsSize) {
+  // A spike that a spline through the others would excuse as its own error.
+  const auto row = [](double a, double by) -> std::array<double, 4> {
+    return {a, x_of(a) + (a > 150 && a < 158 ? by : 0), y_of(a), t_of(a)};
+  };
+  write_curve(50, [&](double a) { return row(a, 25); });
+  const auto d = description(50, "", "relative = 1e-3");
+  EXPECT_TRUE(judge(d, {curve(d)}, result(360), {}).agrees()) << "resampled it is forgiven";
+  const Judgement j = judged(d);
+  EXPECT_EQ(finding(j, "X_x_N"), Finding::differs);
+  EXPECT_NEAR(j.channels.at(0).comparison.largest, 25, 1e-9);
+  EXPECT_NEAR(j.channels.at(0).comparison.theta_of_largest_deg, 151.2, 1e-9);
+  EXPECT_NEAR(j.channels.at(0).comparison.allowed, 1e-3 * j.channels.at(0).comparison.peak, 1e-12);
+  EXPECT_EQ(finding(j, "X_y_N"), Finding::agrees);
+}
+
+TEST_F(OwnAngles, AGapIsNotJudgedAndNamed) {
+  std::string text = "theta_deg,X_x_N,X_y_N,T_Nm\n";
+  int rows = 0;
+  for (double a = 0; a < 360; a += 5) {
+    if (a > 60 && a < 85) continue;
+    ++rows;
+    for (const double value : {a, x_of(a), y_of(a)}) {
+      append_number(text, value);
+      text += ',';
+    }
+    append_number(text, t_of(a));
+    text += '\n';
+  }
+  write("curve.csv", text);
+  const Judgement j = judged(description(rows, "", "relative = 1e-10"));
+  EXPECT_TRUE(j.agrees());
+  ASSERT_EQ(j.gaps.size(), 1u);
+  EXPECT_EQ(j.gaps[0].from_deg, 60);
+  EXPECT_EQ(j.gaps[0].to_deg, 85);
+  // Too wide a one is refused, but of the angles that the case itself has.
+  write_plain(11);
+  EXPECT_THAT(thrown([&] { judged(description(11)); }), HasSubstr("gaps of at most 30 deg"));
+  const auto d = description(11);
+  EXPECT_TRUE(judge(d, {curve(d)}, ResultAt(result_at), angles(11), {}).agrees());
+}
+
+TEST_F(OwnAngles, RoundedAnglesAllowWhatTheModelChangesWithin) {
+  // Steps of 3.6 deg, written as whole degrees.
+  write_curve(100, [](double a) -> std::array<double, 4> {
+    return {std::round(a), x_of(a), y_of(a), t_of(a)};
+  });
+  const auto with = [&](const std::string& rounding) {
+    return description(100, "[curve.angle]\nrounding_deg = " + rounding + "\n", "relative = 1e-3");
+  };
+  EXPECT_FALSE(judged(with("0")).agrees());
+  EXPECT_TRUE(judged(with("0.5")).agrees());
+  // A shift by twice that is none of it.
+  const Judgement shifted = judged(with("0.5"), [](const std::vector<double>& theta_deg) {
+    std::vector<double> later = theta_deg;
+    for (double& angle : later) angle += 1;
+    ResultTable table = result_at(later);
+    table.theta_deg = theta_deg;
+    return table;
+  });
+  EXPECT_EQ(finding(shifted, "X_x_N"), Finding::differs);
+  EXPECT_THAT(thrown([&] { curve(with("1.6")); }),
+              HasSubstr("rounding_deg = 1.6: must be at most half of the smallest step between two "
+                        "angles, 3 deg"));
+}
+
+TEST_F(OwnAngles, CurvesOfOtherAnglesEachAreHeldToTheirs) {
+  const auto file = [&](const char* name, const char* column, int rows, double (*of)(double)) {
+    std::string text = std::string("theta_deg,") + column + "\n";
+    for (int i = 0; i < rows; ++i) {
+      append_number(text, 360.0 * i / rows);
+      text += ',';
+      append_number(text, of(360.0 * i / rows));
+      text += '\n';
+    }
+    write(name, text);
+  };
+  file("curve.csv", "X_x_N", 50, x_of);
+  file("torque.csv", "T_Nm", 33, t_of);
+  const auto d = description(50, "[[curve]]\nfile = \"torque.csv\"\npoints = 33\n");
+  const auto held = [&](const ResultAt& model) {
+    return judge(d, {curve(d), read_reference_curve(d, d.curves.at(1), kChannels, 9000)}, model,
+                 angles(360), {});
+  };
+  const Judgement j = held(result_at);
+  EXPECT_EQ(finding(j, "X_x_N"), Finding::agrees);
+  EXPECT_EQ(finding(j, "T_Nm"), Finding::agrees);
+  EXPECT_EQ(finding(j, "X_y_N"), Finding::missing);
+  EXPECT_EQ(j.reference.rows(), 82u);  // 0 is of both
+  for (std::size_t row = 0; row < j.reference.rows(); ++row) {
+    const double deg = j.reference.theta_deg[row];
+    const double x = j.reference.at(row, j.reference.find("X_x_N"));
+    const double t = j.reference.at(row, j.reference.find("T_Nm"));
+    EXPECT_TRUE(is_computed(x) || is_computed(t));
+    if (is_computed(x)) {
+      EXPECT_EQ(x, x_of(deg));
+    }
+    if (is_computed(t)) {
+      EXPECT_EQ(t, t_of(deg));
+    }
+    EXPECT_EQ(j.result.at(row, 2), t_of(deg));
+  }
+  const auto off = [](const std::vector<double>& theta_deg) {
+    ResultTable table = result_at(theta_deg);
+    for (std::size_t row = 0; row < table.rows(); ++row) table.values[3 * row + 2] += 1;
+    return table;
+  };
+  EXPECT_EQ(finding(held(off), "T_Nm"), Finding::differs);
+  EXPECT_EQ(finding(held(off), "X_x_N"), Finding::agrees);
 }
 
 TEST_F(ReferenceFolder, ToleranceIsAbsolutePlusRelativeToThePeakOfTheVector) {

@@ -358,7 +358,7 @@ class ForeignCurveTest(RegressTest):
                 self.assertEqual(by_group[model, group], "passed")
             for group in ("Rc", "Rb2", "Rcs", "Fh", "Th", "Rcn"):
                 self.assertEqual(by_group[model, group], "skipped")
-        self.assert_mentions(out, "resampled", "missing     ref: no curve of Fh, Rb2, Rc, Rcn, Rcs", "27 of 30")
+        self.assert_mentions(out, "computed and compared at the reference's own 400 angles", "missing     ref: no curve of Fh, Rb2, Rc, Rcn, Rcs", "27 of 30")
         # No more digits than the curve has.
         self.assertEqual(max(float(d) for d in re.findall(r"e-\d\d +(\d+\.\d) ", out)), 3.0)
 
@@ -515,6 +515,80 @@ class PublishedTest(RegressTest):
     def test_another_pump_has_no_table(self):
         for change in ({"pump.pistons": 7}, {"pump.bore_diameter_mm": 24.0}, {"gear.pitch_diameter_mm": 90.0}):
             self.assertIsNone(self.section(Case(**change)))
+
+
+class OwnAnglesTest(RegressTest):
+    """Records at angles that are none of the case's: nothing is resampled, so nothing is forgiven."""
+    CHANNELS = "Rs_1_x2_N,Rs_1_y2_N,Rs_1_z2_N,Rb1_x1_N,Rb1_y1_N,Rb1_z1_N,Td_z1_Nm"
+    CASE = "bap63_rated"
+
+    def record(self, keep, *changes):
+        """Rows of the multibody model, every tenth of a degree, that `keep` takes: of their number."""
+        self.run_program("run", self.CASE, "--model", "multibody", "--channels", self.CHANNELS, "--set",
+                         "operation.samples_per_revolution=3600", *(w for c in changes for w in ("--set", c)), "--out", "fine")
+        header, *rows = csv.reader(io.StringIO((self.folder / "fine" / "multibody.csv").read_text()))
+        return [header, *([*row] for i, row in enumerate(rows) if keep(i))]
+
+    def held(self, rows, status, *more):
+        """What regress says of a reference that is made of a record."""
+        (self.folder / "record.csv").write_text("".join(",".join(row) + "\n" for row in rows))
+        shutil.rmtree(self.folder / "ref", ignore_errors=True)
+        self.run_program("reference", "new", self.CASE, "--from", "record.csv", "--accept", "--out", "ref", *more)
+        out = self.regress("ref", status=status)
+        self.assertNotIn("resampled", out)
+        # The other command that states it says the same.
+        compared = self.run_program("compare", self.CASE, "--with", "ref", "--out", "out", *more, status=status)
+        if status == OUT_OF_TOLERANCE:
+            for line in re.findall(r"^differs .*$", out, re.MULTILINE):
+                self.assertIn(line, compared.out)
+        return out
+
+    def test_every_right_record_agrees(self):
+        for name, keep in (("rough", lambda i: i % 80 == 3), ("a gap of 25 deg", lambda i: i % 10 == 3 and not 600 <= i < 850),
+                           ("a few rows missing", lambda i: i % 10 == 0 and not 990 <= i < 1030)):
+            with self.subTest(name):
+                out = self.held(self.record(keep), DONE)
+                worst = max(float(d) for d in re.findall(r"(\d\.\de[-+]\d\d) +\d+\.\d ", out))
+                self.assertLess(worst, 1e-11)  # of the multibody model's own
+                self.assert_mentions(out, "nothing is compared between 98 and 103 deg" if "rows" in name else
+                                     "computed and compared at the reference's own")
+        out = self.held(self.record(lambda i: i % 10 == 3 and not 600 <= i < 850), DONE)
+        self.assert_mentions(out, "nothing is compared between 59.3 and 85.3 deg")
+
+    def test_whole_degrees(self):
+        """Integer angles are exact where their steps are multiples of one; rounded ones are not."""
+        rows = self.record(lambda i: i % 10 == 0 and not 990 <= i < 1030)
+        for write in ("{:.0f}", "{:.4f}"):
+            same = [rows[0], *([write.format(float(row[0])), *row[1:]] for row in rows[1:])]
+            self.held(same, DONE)
+            self.assertNotIn("rounding_deg", (self.folder / "ref" / "description.toml").read_text())
+        rounded = self.record(lambda i: i % 36 == 3)
+        self.held([rounded[0], *([f"{float(row[0]):.0f}", *row[1:]] for row in rounded[1:])], DONE)
+        self.assertIn("rounding_deg = 0.5", (self.folder / "ref" / "description.toml").read_text())
+
+    def test_spike(self):
+        rows = self.record(lambda i: i % 36 == 3)
+        rows[42][4] = str(float(rows[42][4]) + 9000)
+        out = self.held(rows, OUT_OF_TOLERANCE)
+        self.assert_mentions(out, "differs", "Rb1_x1_N at 147.9 deg")
+        self.assertRegex(out, r"agrees +ref +Rs ")
+        self.assertRegex(out, r"differs +ref +Rb1 .* 2\.0e-01")
+
+    def test_wrong_timing(self):
+        out = self.held(self.record(lambda i: i % 80 == 3, "pressure.delivery_start_deg=184"), OUT_OF_TOLERANCE)
+        size = float(re.search(r"differs +ref +Rs +\S+ N +(\S+)", out)[1])
+        self.assertGreater(size, 0.25)
+
+    def test_the_wrong_parameter_explains_it(self):
+        """And what explains it in the case makes it agree: both commands say one thing."""
+        for change in ("piston.mass_kg=0.0936", "pump.tilt_deg=39"):
+            for keep in (lambda i: i % 20 == 3, lambda i: i % 56 == 3):
+                name, value = change.split("=")
+                out = self.held(self.record(keep, change), OUT_OF_TOLERANCE)
+                line = next(line for line in out.splitlines() if " explains " in line)
+                self.assertRegex(line, rf"{name} [\d.]+ -> {value}\d* .* explains 100 % of the difference")
+                self.assertNotIn("other causes", line)
+                self.held(self.record(keep, change), DONE, "--set", change)
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
@@ -52,24 +53,31 @@ void require_constant_speed(const Case& the_case) {
 
 Samples sample_case(const Case& the_case, const PressureTrace& pressure, int revolutions,
                     bool falling, const SampleRange& range) {
-  require_constant_speed(the_case);
   const int per_turn = the_case.operation.samples_per_revolution;
   const long long rows = static_cast<long long>(per_turn) * revolutions;
   const long long end = range.count < 0 ? rows : std::min(rows, range.first + range.count);
+  std::vector<double> theta_deg;
+  theta_deg.reserve(static_cast<std::size_t>(std::max(0LL, end - range.first)));
+  for (long long row = range.first; row < end; ++row) {
+    const double theta = (falling ? -360.0 : 360.0) * static_cast<double>(row) / per_turn;
+    theta_deg.push_back(theta == 0 ? 0 : theta);  // no -0
+  }
+  return sample_angles(the_case, pressure, std::move(theta_deg));
+}
+
+Samples sample_angles(const Case& the_case, const PressureTrace& pressure,
+                      std::vector<double> theta_deg) {
+  require_constant_speed(the_case);
   Samples samples;
+  samples.theta_deg = std::move(theta_deg);
   samples.pistons = the_case.pump.geometry.pistons;
   samples.omega = rad_per_second(the_case.operation.speed_rpm);
   samples.ports = the_case.pressure.ports;
-  const auto count = static_cast<std::size_t>(std::max(0LL, end - range.first));
-  samples.theta_deg.reserve(count);
-  samples.chamber_pressure.reserve(count * static_cast<std::size_t>(samples.pistons));
-  for (long long row = range.first; row < end; ++row) {
-    const double theta = (falling ? -360.0 : 360.0) * static_cast<double>(row) / per_turn;
-    samples.theta_deg.push_back(theta == 0 ? 0 : theta);  // no -0
+  samples.chamber_pressure.reserve(samples.theta_deg.size() *
+                                   static_cast<std::size_t>(samples.pistons));
+  for (const double theta : samples.theta_deg)
     for (int k = 1; k <= samples.pistons; ++k)
-      samples.chamber_pressure.push_back(
-          pressure(piston_angle_deg(samples.theta_deg.back(), k, samples.pistons)));
-  }
+      samples.chamber_pressure.push_back(pressure(piston_angle_deg(theta, k, samples.pistons)));
   return samples;
 }
 

@@ -22,6 +22,10 @@ CLI::Validator number_that(const std::string& range, const std::function<bool(do
                            bool integer = false) {
   return {[=](const std::string& text) {
             double value = 0;
+            // An option that counts is read as an integer: "1e3" is none.
+            long long whole = 0;
+            if (integer && !CLI::detail::lexical_cast(text, whole))
+              return text + ": must be " + range + ", in digits alone";
             if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && allowed(value))
               return std::string();
             return text + ": must be " + range + (integer ? "" : decimal_point_hint(text));

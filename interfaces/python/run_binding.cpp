@@ -127,7 +127,11 @@ Table run_states(const PythonCase& the_case, const Motion& states, const std::st
   options.model = model_called(model);
   const bool arrays = py::hasattr(states, "items");
   const NumericTable given = arrays ? numeric_table(states) : NumericTable{};
-  const std::string file = arrays ? "states" : paths_of(states, "states").at(0);
+  const std::vector<std::string> files =
+      arrays ? std::vector<std::string>{"states"} : paths_of(states, "states");
+  if (files.size() != 1)
+    throw InputError("states: must be a mapping from columns to arrays, or one path");
+  const std::string& file = files.front();
   const Case copy = the_case.copy();
   return shown(unlocked([&](const study::PartProgress& progress_of) {
     Warned<MotionTable> found;

@@ -60,7 +60,7 @@ Table table_in(const py::tuple& state) {
                          {numbers.data(), numbers.data() + numbers.size()},
                          static_cast<std::size_t>(numbers.shape(0)), state[3].cast<bool>(),
                          state[4].cast<std::size_t>());
-  if (state.size() > 5) table.warnings = state[5].cast<std::vector<std::string>>();  // since 1.0.1
+  if (state.size() > 5) table.warnings = state[5].cast<std::vector<std::string>>();  // since 1.1.0
   return table;
 }
 

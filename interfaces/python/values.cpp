@@ -22,6 +22,12 @@ bool is_path(const py::handle& value) {
   return py::isinstance<py::str>(value) || py::hasattr(value, "__fspath__");
 }
 
+std::string text_of(const py::handle& value, const std::string& what) try {
+  return py::cast<std::filesystem::path>(value).string();
+} catch (const py::cast_error&) {
+  throw InputError(what + ": must be a text that UTF-8 can encode, without a null character");
+}
+
 // A number of Python's or numpy's; what is neither raises nothing.
 bool is_number(const py::handle& value) {
   return PyIndex_Check(value.ptr()) != 0 || PyFloat_Check(value.ptr()) != 0 ||
@@ -60,7 +66,7 @@ std::vector<std::string> list_of(const py::handle& values, const std::string& wh
   const auto text = [&](const py::handle& value) -> std::string {
     if (!one(value))
       throw InputError(what + ": must be " + wanted + " or a list of them, not " + type_of(value));
-    return py::cast<std::filesystem::path>(value).string();
+    return text_of(value, what);
   };
   if (values.is_none()) return {};
   if (one(values)) return {text(values)};
@@ -88,7 +94,7 @@ std::string toml_of(const py::handle& value, const std::string& what) {
   if (dimensions_of(value) == 0 && is_list(value)) return toml_of(value.attr("item")(), what);
   if (is_flag(value))
     return py::cast<bool>(py::bool_(py::reinterpret_borrow<py::object>(value))) ? "true" : "false";
-  if (is_path(value)) return toml_text(py::cast<std::filesystem::path>(value).string());
+  if (is_path(value)) return toml_text(text_of(value, what));
   if (is_list(value))
     return "[" +
            joined(py::reinterpret_borrow<py::object>(value), ", ",
@@ -115,9 +121,9 @@ std::vector<std::pair<std::string, py::object>> items_of(const py::handle& mappi
 }
 
 std::string values_text(const std::string& name, const py::handle& values) {
-  if (py::isinstance<py::str>(values)) return values.cast<std::string>();
+  if (py::isinstance<py::str>(values)) return text_of(values, name);
   const auto one = [&](const py::handle& value) {
-    return py::isinstance<py::str>(value) ? value.cast<std::string>() : toml_of(value, name);
+    return py::isinstance<py::str>(value) ? text_of(value, name) : toml_of(value, name);
   };
   const std::optional<int> dimensions = dimensions_of(values);
   if (dimensions > 1)

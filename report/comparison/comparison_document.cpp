@@ -393,7 +393,7 @@ report::Curves comparison_curves(const ComparisonResult& r, const report::Docume
   for (const report::Figure& figure : *document.figures)
     if (const auto* content = std::get_if<report::ChannelFigure>(&figure.content))
       for (const std::string& channel : content->channels) add_once(shown, channel);
-  curves.reference = reference_curves(*r.with, shown);
+  curves.reference = reference_curves(*r.with, shown, curves.theta_deg);
   return curves;
 }
 

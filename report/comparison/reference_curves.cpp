@@ -3,12 +3,33 @@
 #include <utility>
 
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
 #include "bentaxis/report/document.h"
+#include "bentaxis/results/periodic_lines.h"
 
 namespace bentaxis::study {
 
-std::optional<report::Curves::Reference> reference_curves(
-    const Outcome& outcome, const std::vector<std::string>& channels) {
+namespace {
+
+// Values of a reference's column, or of the difference from it, at the angles of a page.
+report::Values drawn_at(const std::vector<double>& theta_deg, const Outcome::Held& held,
+                        const report::Values& values) {
+  const std::vector<double>& own = held.reference.theta_deg;
+  if (own == theta_deg) return values;
+  report::Values drawn = on_lines(own, values, theta_deg);
+  for (std::size_t i = 0; i < drawn.size(); ++i)
+    for (const auto& gap : held.gaps)
+      if (const double past = wrap_degrees(theta_deg[i] - gap.from_deg);
+          past > 0 && past < gap.to_deg - gap.from_deg)
+        drawn[i] = not_computed();
+  return drawn;
+}
+
+}  // namespace
+
+std::optional<report::Curves::Reference> reference_curves(const Outcome& outcome,
+                                                          const std::vector<std::string>& channels,
+                                                          const std::vector<double>& theta_deg) {
   report::Curves::Reference reference{outcome.name, {}};
   for (const std::string& channel : channels) {
     report::Curves::Held one{channel, {}, 0, {}, {}};
@@ -17,11 +38,11 @@ std::optional<report::Curves::Reference> reference_curves(
       const std::size_t theirs = held.reference.find(channel), ours = held.result.find(channel);
       if (found == nullptr || theirs == held.reference.columns()) continue;
       if (one.values.empty()) {
-        one.values = report::values_of(held.reference, channel);
+        one.values = drawn_at(theta_deg, held, report::values_of(held.reference, channel));
         one.allowed = found->comparison.allowed;
         if (held.low.rows() > 0) {
-          one.low = report::values_of(held.low, channel);
-          one.high = report::values_of(held.high, channel);
+          one.low = drawn_at(theta_deg, held, report::values_of(held.low, channel));
+          one.high = drawn_at(theta_deg, held, report::values_of(held.high, channel));
         }
       }
       report::Values difference;
@@ -30,7 +51,7 @@ std::optional<report::Curves::Reference> reference_curves(
         difference.push_back(is_computed(theirs_now) ? held.result.at(row, ours) - theirs_now
                                                      : not_computed());
       }
-      one.differences.emplace_back(model, std::move(difference));
+      one.differences.emplace_back(model, drawn_at(theta_deg, held, difference));
     }
     if (!one.values.empty()) reference.held.push_back(std::move(one));
   }

@@ -60,11 +60,7 @@ report::Curves curves_of(const Outcome& outcome, const std::string& model,
     curves.tables.resize(1);
     curves.difference.clear();
   }
-  curves.reference = reference_curves(outcome, channels);
-  if (curves.reference)  // of models at other angles
-    for (auto& held : curves.reference->held)
-      std::erase_if(held.differences,
-                    [&](const auto& column) { return column.second.size() != theta.size(); });
+  curves.reference = reference_curves(outcome, channels, theta);
   return curves;
 }
 

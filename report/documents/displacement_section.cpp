@@ -157,20 +157,22 @@ report::Figure bias_figure(const DisplacementStudy& study) {
 }  // namespace
 
 std::vector<std::string> displacement_answers(const DisplacementStudy& study) {
-  const MeteredDisplacement& meter = study.meters.at(0);
+  const MeteredDisplacement& first = study.meters.at(0);
   std::vector<std::string> values, above;
-  for (const DerivedDisplacement& derived : meter.derived) {
-    if (!is_computed(derived.volume)) continue;
-    values.push_back(fmt::format("{} {:.5g} cm3 ({})", name_of(derived.method),
-                                 derived.volume / kCubicCentimetre, bias_text(derived)));
-    if (derived.above_one > 0)
-      above.push_back(fmt::format("by {} at {} of {} points (up to {:.2f} % at {})",
-                                  name_of(derived.method), derived.above_one, meter.points.size(),
-                                  100 * derived.efficiency[derived.highest],
-                                  place_of(meter.points[derived.highest])));
-  }
+  for (const MeteredDisplacement& meter : study.meters)
+    for (const DerivedDisplacement& derived : meter.derived) {
+      if (!is_computed(derived.volume)) continue;
+      if (&meter == &first)
+        values.push_back(fmt::format("{} {:.5g} cm3 ({})", name_of(derived.method),
+                                     derived.volume / kCubicCentimetre, bias_text(derived)));
+      if (derived.above_one > 0)
+        above.push_back(fmt::format(
+            "by {}{} at {} of {} points (up to {:.2f} % at {})", name_of(derived.method),
+            &meter == &first ? "" : ", flow " + meter.meter, derived.above_one, meter.points.size(),
+            100 * derived.efficiency[derived.highest], place_of(meter.points[derived.highest])));
+    }
   return {fmt::format("Derived displacement, flow {}: {}; the geometric one is {:.5g} cm3.",
-                      meter.meter, joined(values), study.geometric / kCubicCentimetre),
+                      first.meter, joined(values), study.geometric / kCubicCentimetre),
           above.empty() ? std::string("No method gives a volumetric efficiency above 100 %.")
                         : "The volumetric efficiency exceeds 100 % " + joined(above, "; ") + "."};
 }

@@ -292,21 +292,37 @@ report::PublishedTable published_table(compare::PublishedSection section) {
       std::move(section)};
 }
 
-// Will two masses do? Which reactions they miss by more than the limit, and where; the rest.
-std::string headline(const InertiaStudy& s) {
-  std::map<std::string, LumpingError> worst;  // by group, of all speeds, loaded
+// By group, of all speeds, loaded.
+std::map<std::string, LumpingError> worst_errors(const InertiaStudy& s) {
+  std::map<std::string, LumpingError> worst;
   for (const InertiaRun& run : s.full)
     if (run.loaded)
       for (const auto& error : lumping_errors(run, run))
         if (auto& known = worst[error.group];
             known.group.empty() || error.fraction() > known.fraction())
           known = error;
+  return worst;
+}
+
+// The answer to what the study was asked; "" where the models do not agree.
+std::string word(const InertiaStudy& s) {
+  if (!s.agrees()) return {};
+  const auto worst = worst_errors(s);
+  return std::all_of(worst.begin(), worst.end(),
+                     [](const auto& one) { return one.second.fraction() <= kTwoMassesDo; })
+             ? "Two masses are enough"
+             : "Two masses are not enough";
+}
+
+// Will two masses do? Which reactions they miss by more than the limit, and where; the rest.
+std::string headline(const InertiaStudy& s) {
   const auto of_peak = [](const LumpingError& error) {
     return fmt::format("{:.2g} % of its loaded peak ({:.3g} {} at {})", 100 * error.fraction(),
                        error.analytic, error.unit, rpm(error.speed_rpm));
   };
   std::vector<std::string> missed;
   const LumpingError* largest = nullptr;  // of those within the limit
+  const auto worst = worst_errors(s);
   for (const auto& [group, error] : worst) {
     if (error.fraction() > kTwoMassesDo)
       missed.push_back(fmt::format("{}: off by {}", group, of_peak(error)));
@@ -374,7 +390,7 @@ InertiaReport inertia_report(const InertiaStudy& s,
   curves.tables = {{"analytic", {}}, {"multibody", {}}};
   report::Document& document = result.document;
   document = case_document(description, "Lumped or real pistons: " + s.the_case.name, program);
-  document.verdict = report::Verdict{s.agrees(), headline(s)};
+  document.verdict = report::Verdict{s.agrees(), headline(s), word(s)};
   document.verdict->tolerance = kInertiaModelsAgree;
   document.verdict->answers = answers_of(s);
   document.runs = {{"Error of lumping on a piston's reactions",

@@ -42,7 +42,9 @@ std::vector<std::string> bindings(const Optimisation& found, std::size_t design)
   const SweepPlan& plan = found.plan.designs;
   std::vector<std::string> all;
   for (const Constraint& c : found.plan.constraints) {
-    const double value = plan.direction[c.output] == 0 ? measured(found, design, c.output) : NAN;
+    // With conditions an objective is measured as a mean, which no condition is held to.
+    const bool of_mean = plan.direction[c.output] != 0 && !found.plan.conditions.empty();
+    const double value = of_mean ? NAN : measured(found, design, c.output);
     const double own = std::abs(found.own.values[c.output]);
     const double scale = std::max(std::abs(c.limit), std::isfinite(own) ? own : 0);
     if (std::abs(value - c.limit) <= kAtEnd * scale) all.push_back(found.plan.text(c));

@@ -203,7 +203,17 @@ std::vector<std::pair<std::string, std::string>> pressure_csv(
 void add_suction_speed(report::Document& document, const OperatingPoint& point,
                        const SuctionSpeed& found) {
   document.timing->push_back(suction_speed_row(point.the_case(), found));
-  report::append(document.warnings, timing_warnings({document.timing->back()}));
+  const report::TimingRow& row = document.timing->back();
+  report::append(document.warnings, timing_warnings({row}));
+  std::vector<std::string>& answers = document.verdict->answers;
+  answers.insert(answers.begin(),
+                 fmt::format("{} {} rpm: {}. The case turns at {:.5g} rpm.",
+                             found.filling ? "Filling speed" : "Suction speed",
+                             row.bound.empty() ? fmt::format("{:.4g}", row.value) : row.bound,
+                             row.text, point.the_case().operation.speed_rpm));
+  // One sentence on all quantities that have a limit, this one too.
+  std::erase_if(answers, [](const std::string& text) { return text.starts_with(kPortTiming); });
+  answers.push_back(timing_answer(*document.timing));
 }
 
 std::string pressure_text(const OperatingPoint& point, const hydraulics::PowerBudget& power,

@@ -64,10 +64,12 @@ std::string headline(const RattleMap& map) {
   for (std::size_t k = 0; k < counts.size(); ++k)
     if (counts[k] > 0)
       classes.push_back(fmt::format("{} at {}", rattle_class_names()[k], counts[k]));
-  std::string text = fmt::format("{} of {} points", joined(classes),
-                                 map.rows.size() * map.options.speed_rpm.size());
+  // Pressures that failed as a whole are not among the rows.
+  const std::size_t speeds = map.options.speed_rpm.size(), lost = map.failed.size() * speeds;
+  std::string text =
+      fmt::format("{} of {} points", joined(classes), map.rows.size() * speeds + lost);
   if (const auto failed = std::accumulate(
-          map.rows.begin(), map.rows.end(), std::ptrdiff_t{0},
+          map.rows.begin(), map.rows.end(), static_cast<std::ptrdiff_t>(lost),
           [](std::ptrdiff_t sum, const RattleRow& row) {
             return sum + std::count_if(row.up.begin(), row.up.end(),
                                        [](const RattlePoint& point) { return !point.done(); });
@@ -109,14 +111,20 @@ std::vector<std::string> answers_of(const RattleMap& map) {
     text += fmt::format("{}{:.4g}", text.empty() ? "" : ", ", speeds[from]);
     if (j > from) text += fmt::format(" to {:.4g}", speeds[j]);
   }
+  const bool all = map.failed.empty();
   const std::string at = fmt::format(
-      "At {:.4g} bar, of the pressures of the map the nearest to the case's {:.4g} bar: ",
-      nearest->delivery_bar, rated);
+      "At {:.4g} bar, of the pressures of the map{} the nearest to the case's {:.4g} bar: ",
+      nearest->delivery_bar, all ? "" : " that could be computed", rated);
+  std::string lost;
+  for (const FailedPoint& failed : map.failed)
+    lost += fmt::format("{}{:.4g} bar", lost.empty() ? "" : ", ", failed.value);
+  if (!all) lost = " Could not be computed: " + lost + ".";
   const auto unknown = static_cast<std::size_t>(
       std::count_if(nearest->up.begin(), nearest->up.end(),
                     [](const RattlePoint& point) { return !point.done(); }));
-  const std::string open =
-      unknown == 0 ? "" : fmt::format(" {} of its speeds could not be computed.", unknown);
+  const std::string open = unknown == 0 ? ""
+                                        : fmt::format(" {} of its {} speeds could not be computed.",
+                                                      unknown, nearest->up.size());
   // A sweep starts where it ended at the speed before.
   const std::string starts =
       speeds.size() > 1 ? ""
@@ -124,12 +132,12 @@ std::vector<std::string> answers_of(const RattleMap& map) {
                           "with speeds on both sides of it.";
   return {at +
           (text.empty()
-               ? fmt::format("the {} are loaded throughout the turn at all speeds of the map.",
-                             words(map).contacts)
+               ? fmt::format("the {} are loaded throughout the turn at all speeds of the map{}.",
+                             words(map).contacts, unknown == 0 ? "" : " that could be computed")
                : fmt::format("avoid {} rpm: the {} are not loaded throughout the turn (speeds of "
                              "the map).",
                              text, words(map).contacts)) +
-          open + starts};
+          open + lost + starts};
 }
 
 std::string against(RattleClass analytic, RattleClass multibody) {

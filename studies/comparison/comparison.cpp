@@ -503,23 +503,32 @@ void Maker::run_without_viscous(const PartProgress& progress_of) {
 // Both models held to a reference: what was asked for and computed.
 void Maker::hold_to_reference() {
   ComparisonResult& r = result_;
-  const auto computed = [](const ResultTable& table, const Channel& channel) {
-    return any_computed(table, table.find(channel.name));
+  const auto computed = [&](Model model) -> const ResultTable& {
+    return model == Model::analytic ? r.analytic : r.multibody;
   };
+  const auto wanted = [&](Model model, const ResultTable& table) {
+    return select_channels(table, [&](const Channel& channel) {
+      return r.options.channels.wants(channel) &&
+             any_computed(computed(model), computed(model).find(channel.name));
+    });
+  };
+  ResultAt at_angles;
+  if (!integrated())
+    at_angles = [&](Model model, const std::vector<double>& theta_deg) {
+      return wanted(model,
+                    model == Model::analytic
+                        ? run_at_angles(r.first, theta_deg, {}, progress_of_)
+                        : run_at_angles(r.second, theta_deg, multibody_run(0), progress_of_));
+    };
   r.with = hold_results(
       r.options.with,
       [&](Model model) -> const Case& {
         return model == Model::analytic ? r.first.the_case : r.second.the_case;
       },
       [&](Model model) {
-        const ResultTable& table = model == Model::analytic ? r.analytic : r.multibody;
-        return ReferenceRun{select_channels(table,
-                                            [&](const Channel& channel) {
-                                              return r.options.channels.wants(channel) &&
-                                                     computed(table, channel);
-                                            }),
-                            zero_scales_};
-      });
+        return ReferenceRun{wanted(model, computed(model)), zero_scales_};
+      },
+      at_angles);
   if (!r.with->other_case.empty())
     r.warnings.push_back(
         {"the curves belong to another case", r.with->name + ": " + r.with->other_case});

@@ -41,22 +41,26 @@ std::size_t stride_of(const compare::ReferenceDescription& description, const Ca
   return all % theirs == 0 ? static_cast<std::size_t>(all / theirs) : 1;
 }
 
-// The reverse: not computed between the rows.
-ResultTable spread(std::size_t stride, const ResultTable& some,
-                   const std::vector<double>& theta_deg) {
-  if (some.rows() == 0) return some;
-  ResultTable table = some;
-  table.theta_deg = theta_deg;
-  table.values.assign(theta_deg.size() * some.columns(), not_computed());
-  for (std::size_t row = 0; row < some.rows(); ++row)
-    for (std::size_t c = 0; c < some.columns(); ++c)
-      table.values[row * stride * some.columns() + c] = some.at(row, c);
-  return table;
+// What is to be known of the angles that were compared.
+void note_angles(const std::string& model, const compare::Judgement& judgement,
+                 std::vector<std::string>& notes) {
+  if (judgement.resampled)
+    notes.push_back(fmt::format(
+        "{}: the reference has other angles than the results and was resampled, which adds an "
+        "error of up to {:.1e} of peak; this is added to the tolerance around each angle",
+        model, judgement.resampling_error));
+  if (judgement.at_own_angles)
+    notes.push_back(fmt::format("{}: computed and compared at the reference's own {} angles", model,
+                                judgement.reference.rows()));
+  for (const auto& gap : judgement.gaps)
+    notes.push_back(fmt::format(
+        "{}: nothing is compared between {:g} and {:g} deg, where the reference has no points",
+        model, gap.from_deg, gap.to_deg));
 }
 
-// Holds the results to the curves; nothing is run here but by `result_of`.
+// Holds the results to the curves; nothing is run here but by `result_of` and `result_at`.
 void hold_to_curves(const compare::ReferenceDescription& description, const CaseOf& case_of,
-                    const ResultOf& result_of, Outcome& outcome) {
+                    const ResultOf& result_of, const ResultAt& result_at, Outcome& outcome) {
   outcome.properties = {{"source", description.source},
                         {"how_made", description.how_made},
                         {"digits", std::to_string(description.digits)},
@@ -84,14 +88,19 @@ void hold_to_curves(const compare::ReferenceDescription& description, const Case
     for (const auto& curve : curves)
       for (const auto& note : curve.notes) outcome.notes.push_back(model + ": " + note);
     const ReferenceRun run = result_of(which);
-    const std::size_t stride = stride_of(description, the_case);
-    const compare::Judgement judgement =
-        compare::judge(description, curves, every_row(run.table, stride), run.zero_scales);
-    if (judgement.resampled)
-      outcome.notes.push_back(fmt::format(
-          "{}: the reference has other angles than the case and was resampled, which adds an error "
-          "of up to {:.1e} of peak; this is added to the tolerance around each angle",
-          model, judgement.resampling_error));
+    compare::Judgement judgement;
+    if (result_at) {
+      const auto at = [&](const std::vector<double>& theta_deg) {
+        if (auto there = compare::rows_at(run.table, theta_deg)) return std::move(*there);
+        return result_at(which, theta_deg);
+      };
+      judgement = compare::judge(description, curves, at, run.table.theta_deg, run.zero_scales);
+    } else {
+      ResultTable result = every_row(run.table, stride_of(description, the_case));
+      judgement = compare::judge(description, curves, result, run.zero_scales);
+      judgement.result = std::move(result);
+    }
+    note_angles(model, judgement, outcome.notes);
     const double seconds = stopwatch.seconds();
     auto lines = group_lines(judgement);
     for (auto& line : lines) {
@@ -103,10 +112,9 @@ void hold_to_curves(const compare::ReferenceDescription& description, const Case
       if (line.failed > 0) outcome.state = Outcome::State::differs;
       outcome.lines.push_back(std::move(line));
     }
-    const std::vector<double>& theta = run.table.theta_deg;
-    outcome.held[model] = {
-        run.table, spread(stride, judgement.reference, theta), spread(stride, judgement.low, theta),
-        spread(stride, judgement.high, theta), spread(stride, judgement.resampling, theta)};
+    outcome.held[model] = {std::move(judgement.result),     std::move(judgement.reference),
+                           std::move(judgement.low),        std::move(judgement.high),
+                           std::move(judgement.resampling), std::move(judgement.gaps)};
   }
   if (!any) {
     outcome.state = std::max(outcome.state, Outcome::State::differs);
@@ -193,6 +201,9 @@ Outcome hold(const ReferencePlace& place, const PartProgress& progress_of) {
       hold_to_curves(
           description, [&](Model model) -> const Case& { return cases.of(model).the_case; },
           [&](Model model) { return run_for_reference(cases.of(model), model, progress_of); },
+          [&](Model model, const std::vector<double>& theta_deg) {
+            return run_at_angles(cases.of(model), theta_deg, {.model = model}, progress_of);
+          },
           outcome);
     }
   } catch (const InputError& error) {
@@ -218,7 +229,7 @@ compare::ReferenceDescription reference_in(const std::filesystem::path& folder) 
 }
 
 Outcome hold_results(const std::filesystem::path& folder, const CaseOf& case_of,
-                     const ResultOf& result_of) {
+                     const ResultOf& result_of, const ResultAt& result_at) {
   const Stopwatch stopwatch;
   const auto description = reference_in(folder);
   const Case theirs = read_case(description.case_file);
@@ -230,7 +241,7 @@ Outcome hold_results(const std::filesystem::path& folder, const CaseOf& case_of,
   Outcome outcome;
   outcome.name = description.name;
   outcome.kind = compare::to_string(description.kind);
-  hold_to_curves(description, case_of, result_of, outcome);
+  hold_to_curves(description, case_of, result_of, result_at, outcome);
   outcome.other_case = differing_keys(theirs, case_of(Model::analytic));
   if (!outcome.other_case.empty())
     outcome.notes.push_back("was made for another case: " + outcome.other_case);

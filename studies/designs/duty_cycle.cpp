@@ -74,8 +74,13 @@ DutyCycle read_duty_cycle(const std::filesystem::path& file, const Case& base) {
       share = c;
       continue;
     }
+    const std::string name = full_name(table.header[c]);
+    if (std::any_of(duty.variables.begin(), duty.variables.end(),
+                    [&](const Variable& v) { return v.name() == name; }))
+      throw InputError(file.string() + ":1: column \"" + table.header[c] +
+                       "\" is a duplicate column");
     try {
-      duty.variables.emplace_back(full_name(table.header[c]), base);
+      duty.variables.emplace_back(name, base);
     } catch (const InputError& error) {
       throw InputError(file.string() + ": " + error.what());
     }

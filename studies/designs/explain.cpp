@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -23,9 +22,9 @@ namespace {
 using study::ExplainingChange;
 using study::Explanation;
 
-constexpr int kMostAngles = 720;        // that are looked at
-constexpr std::size_t kRefined = 6;     // changes that are computed again, best of the linear fit
-constexpr double kWorthRefining = 0.1;  // share by the linear fit
+constexpr std::size_t kMostAngles = 720;  // that are looked at
+constexpr std::size_t kRefined = 6;       // changes that are computed again, best of the linear fit
+constexpr double kWorthRefining = 0.1;    // share by the linear fit
 constexpr int kSteps = 6, kHalvings = 6;
 constexpr double kDone = 1e-12;  // of the difference, or by which a step still lowers it
 
@@ -34,7 +33,7 @@ struct Column {
   std::string name;
   std::size_t in_layout;
   double weight;   // 1 / peak
-  double allowed;  // over peak
+  double allowed;  // over peak, where the reference is at its best
 };
 
 class Search {
@@ -45,11 +44,13 @@ class Search {
     if (held == outcome.held.end()) throw InputError("the analytic model was not compared.");
     const ResultTable& result = held->second.result;
     const ResultTable& reference = held->second.reference;
-    if (result.rows() != static_cast<std::size_t>(base.operation.samples_per_revolution))
+    if (result.theta_deg != reference.theta_deg ||
+        std::any_of(result.theta_deg.begin(), result.theta_deg.end(),
+                    [](double angle) { return angle < 0 || angle >= 360; }))
       throw InputError("the results are not those of a driven turn.");
-    choose_columns(outcome, result, reference);
-    choose_angles(reference);
-    collect(result, reference);
+    choose_columns(outcome, held->second);
+    choose_angles(result);
+    collect(held->second);
   }
 
   Explanation find() {
@@ -75,8 +76,8 @@ class Search {
  private:
   using Choice = std::vector<std::size_t>;  // variables
 
-  void choose_columns(const study::Outcome& outcome, const ResultTable& result,
-                      const ResultTable& reference) {
+  void choose_columns(const study::Outcome& outcome, const study::Outcome::Held& held) {
+    const ResultTable &result = held.result, &reference = held.reference;
     const ChannelLayout layout(base_.pump);
     reactions_ = layout.reactions();
     for (const study::GroupLine& line : outcome.lines)
@@ -90,49 +91,49 @@ class Search {
         if (place == layout.channels().end() || result.find(c.channel.name) == result.columns() ||
             reference.find(c.channel.name) == reference.columns())
           continue;
+        const double off = held.resampling.at(row_of(result, c.theta_of_largest_deg),
+                                              held.resampling.find(c.channel.name));
         columns_.push_back({c.channel.name,
                             static_cast<std::size_t>(place - layout.channels().begin()), 1 / c.peak,
-                            c.allowed / c.peak});
+                            (c.allowed - off) / c.peak});
         si_.push_back(place->unit_in_si);
       }
     if (columns_.empty()) throw InputError("no channel of the analytic model was compared.");
   }
 
-  // Every stride-th of those that the reference has.
-  void choose_angles(const ResultTable& reference) {
-    std::size_t stride = 0;
-    for (std::size_t row = 0; row < reference.rows(); ++row)
-      if (std::any_of(columns_.begin(), columns_.end(), [&](const Column& c) {
-            return is_computed(reference.at(row, reference.find(c.name)));
-          }))
-        stride = std::gcd(stride, row);
-    const std::size_t all = reference.rows();
-    if (stride == 0 || all % stride != 0) stride = 1;
-    const std::size_t least = stride;
-    while (all / stride > kMostAngles && stride < all) {
-      std::size_t next = stride + least;
-      while (next < all && all % next != 0) next += least;
-      stride = next;
-    }
-    if (stride >= all) stride = least;
-    stride_ = stride;
-    base_.operation.samples_per_revolution = static_cast<int>(all / stride);
+  static std::size_t row_of(const ResultTable& table, double theta_deg) {
+    const auto it = std::find(table.theta_deg.begin(), table.theta_deg.end(), theta_deg);
+    return static_cast<std::size_t>(it - table.theta_deg.begin()) % table.rows();
   }
 
-  void collect(const ResultTable& result, const ResultTable& reference) {
-    const std::size_t rows = reference.rows() / stride_;
-    wanted_.setZero(static_cast<Eigen::Index>(rows * columns_.size()));
-    known_.assign(rows * columns_.size(), false);
-    here_ = wanted_;
+  // Not too many, evenly spread.
+  void choose_angles(const ResultTable& result) {
+    const std::size_t all = result.rows();
+    std::size_t stride = 1;
+    while ((all - 1) / stride >= kMostAngles) ++stride;
+    for (std::size_t row = 0; row < all; row += stride) {
+      rows_.push_back(row);
+      angles_.push_back(result.theta_deg[row]);
+    }
+  }
+
+  void collect(const study::Outcome::Held& held) {
+    const std::size_t all = rows_.size() * columns_.size();
+    wanted_.setZero(index(all));
+    known_.assign(all, false);
+    here_ = allowed_ = wanted_;
     for (std::size_t c = 0; c < columns_.size(); ++c) {
-      const std::size_t a = result.find(columns_[c].name), b = reference.find(columns_[c].name);
-      for (std::size_t row = 0; row < rows; ++row) {
-        const double ours = result.at(row * stride_, a), theirs = reference.at(row * stride_, b);
+      const Column& column = columns_[c];
+      const std::size_t a = held.result.find(column.name), b = held.reference.find(column.name),
+                        off = held.resampling.find(column.name);
+      for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const double ours = held.result.at(rows_[i], a), theirs = held.reference.at(rows_[i], b);
         if (!std::isfinite(ours) || !std::isfinite(theirs)) continue;
-        const std::size_t at = row * columns_.size() + c;
+        const std::size_t at = i * columns_.size() + c;
         known_[at] = true;
-        wanted_[static_cast<Eigen::Index>(at)] = theirs * columns_[c].weight;
-        here_[static_cast<Eigen::Index>(at)] = ours * columns_[c].weight;
+        wanted_[index(at)] = theirs * column.weight;
+        here_[index(at)] = ours * column.weight;
+        allowed_[index(at)] = column.allowed + held.resampling.at(rows_[i], off) * column.weight;
       }
     }
     difference_ = (wanted_ - here_).squaredNorm();
@@ -157,7 +158,7 @@ class Search {
             }
           }
         },
-        progress_of_);
+        progress_of_, angles_);
     if (variables_.empty()) return;
     normal_ = jacobian_.transpose() * jacobian_;
     right_ = jacobian_.transpose() * (wanted_ - here_);
@@ -216,7 +217,7 @@ class Search {
     const std::string reason = study::reason_of([&] {
       Case changed = base_;
       family.make({x.data(), static_cast<std::size_t>(x.size())}, changed);
-      const ResultTable table = study::run_turn(study::prepare(changed), study::Model::analytic);
+      const ResultTable table = study::run_at_angles(study::prepare(changed), angles_, {});
       for (std::size_t c = 0; c < columns_.size(); ++c) {
         const std::size_t column = table.find(columns_[c].name);
         for (std::size_t row = 0; row < table.rows(); ++row)
@@ -336,10 +337,10 @@ class Search {
     Eigen::Index worst = 0;
     change.rest_over_peak = rest.cwiseAbs().maxCoeff(&worst);
     change.rest_channel = columns_[static_cast<std::size_t>(worst) % columns_.size()].name;
-    for (Eigen::Index at = 0; at < rest.size(); ++at) {
-      const double allowed = columns_[static_cast<std::size_t>(at) % columns_.size()].allowed;
-      change.rest_over_allowed = std::max(change.rest_over_allowed, std::abs(rest[at]) / allowed);
-    }
+    for (Eigen::Index at = 0; at < rest.size(); ++at)
+      if (known_[static_cast<std::size_t>(at)])
+        change.rest_over_allowed =
+            std::max(change.rest_over_allowed, std::abs(rest[at]) / allowed_[at]);
   }
 
   static bool is_small(const ExplainingChange& change) {
@@ -348,13 +349,24 @@ class Search {
     });
   }
 
+  // A value that no pump has explains nothing.
+  bool stays_plausible(const ExplainingChange& change, const Choice& choice) const {
+    for (std::size_t i = 0; i < choice.size(); ++i) {
+      const PlausibleRange& range = variables_[choice[i]].parameter().plausible;
+      const auto& [from, to] = std::pair(change.parameters[i].from, change.parameters[i].to);
+      if ((to < range.low && from >= range.low) || (to > range.high && from <= range.high))
+        return false;
+    }
+    return true;
+  }
+
   std::vector<ExplainingChange> refine(const std::vector<Choice>& choices,
                                        const Progress& progress) const {
     std::vector<ExplainingChange> changes;
     std::size_t done = 0;
     for (const Choice& choice : choices) {
       ExplainingChange change = fit(choice);
-      if (is_small(change)) changes.push_back(std::move(change));
+      if (is_small(change) && stays_plausible(change, choice)) changes.push_back(std::move(change));
       if (progress) progress(static_cast<double>(++done) / static_cast<double>(choices.size()));
     }
     std::stable_sort(changes.begin(), changes.end(),
@@ -366,8 +378,11 @@ class Search {
   const study::PartProgress& progress_of_;
   std::vector<Column> columns_;
   std::vector<double> si_;  // unit of each
-  std::size_t reactions_ = 0, stride_ = 1;
+  std::size_t reactions_ = 0;
+  std::vector<std::size_t> rows_;  // of what is held, that are looked at
+  std::vector<double> angles_;     // of these
   Eigen::VectorXd wanted_, here_;  // of the reference and of the results, over peak
+  Eigen::VectorXd allowed_;        // between them, over peak
   std::vector<bool> known_;
   double difference_ = 0;
   std::vector<Variable> variables_;

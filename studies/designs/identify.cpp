@@ -229,6 +229,10 @@ struct DataModel::Implementation {
     }
     std::vector<double> settings;
     for (const auto& [variable, value] : condition.settings) {
+      // An unknown of this condition is the setting that is not known exactly.
+      if (std::any_of(variables.begin(), variables.end(),
+                      [&](const Variable& v) { return v.name() == variable.name(); }))
+        continue;
       variables.push_back(variable);
       settings.push_back(value);
     }

@@ -136,6 +136,21 @@ Matrix reproduced_by(const Matrix& derivatives) {
   return numerics::LeastSquaresSolver(derivatives).span();
 }
 
+// What of a derivative the unknowns cannot reproduce; nothing where that is next to nothing.
+std::optional<Eigen::VectorXd> own_part(const Eigen::VectorXd& slope, const Matrix& reproduced) {
+  const double length = slope.squaredNorm();
+  if (!(length > 0) || !std::isfinite(length)) return std::nullopt;
+  Eigen::VectorXd own = slope - reproduced * (reproduced.transpose() * slope);
+  if (own.squaredNorm() < kOwnShare * kOwnShare * length) return std::nullopt;
+  return own;
+}
+
+// By which chi-square would fall along it if the model were linear.
+double gain_along(const Eigen::VectorXd& own, const Eigen::VectorXd& residuals) {
+  const double slope = own.dot(residuals);
+  return slope * slope / own.squaredNorm();
+}
+
 std::optional<Promise> promise_of(const DataModel& model, const LeastSquaresFit& fit,
                                   const Matrix& reproduced, const Variable& variable) {
   const NumberRange range = variable.range(model.base());
@@ -147,17 +162,14 @@ std::optional<Promise> promise_of(const DataModel& model, const LeastSquaresFit&
   if (!derivatives_of(problem, std::vector{before},
                       {slope.data(), static_cast<std::size_t>(slope.size())}))
     return std::nullopt;
-  const double length = slope.squaredNorm();
-  if (!(length > 0) || !std::isfinite(length)) return std::nullopt;
-  // What of it the unknowns cannot reproduce.
-  const Eigen::VectorXd own = slope - reproduced * (reproduced.transpose() * slope);
-  if (own.squaredNorm() < kOwnShare * kOwnShare * length) return std::nullopt;
+  const std::optional<Eigen::VectorXd> own = own_part(slope, reproduced);
+  if (!own) return std::nullopt;
   const Eigen::Map<const Eigen::VectorXd> residuals(fit.residuals.data(), slope.size());
-  const double change = -own.dot(residuals) / own.squaredNorm();
+  const double change = -own->dot(residuals) / own->squaredNorm();
   // Away from a bound only.
   if ((change < 0 && before <= range.low) || (change > 0 && before >= range.high))
     return std::nullopt;
-  return Promise{variable, before, change, change * change * own.squaredNorm()};
+  return Promise{variable, before, change, gain_along(*own, residuals)};
 }
 
 // Names of the plausibility warnings of a pump.
@@ -209,14 +221,19 @@ std::vector<HeldUnknown> held_unknowns(const DataModel& model, const LeastSquare
   // Less is what the weak restraint to the case's values does.
   constexpr double kSmallestGain = 0.01;
   std::vector<HeldUnknown> held;
+  const Matrix reproduced = reproduced_by(free_derivatives(model, fit));
+  const auto count = static_cast<Index>(fit.residuals.size());
+  const Eigen::Map<const Eigen::VectorXd> residuals(fit.residuals.data(), count);
   for (std::size_t i = 0; i < model.size(); ++i) {
     if (!is_held(model, fit, i)) continue;
-    const double slope = slope_along(model, fit, i);
-    double curvature = 0;
-    for (std::size_t r = 0; r < fit.residuals.size(); ++r)
-      curvature += std::pow(fit.jacobian[r * model.size() + i], 2);
-    if (const double gain = curvature > 0 ? slope * slope / curvature : 0; gain > kSmallestGain)
-      held.push_back({i, slope < 0, gain});
+    Eigen::VectorXd column(count);
+    for (Index r = 0; r < count; ++r)
+      column[r] = fit.jacobian[static_cast<std::size_t>(r) * model.size() + i];
+    // Beyond the bound the others follow: their part of it changes nothing.
+    const std::optional<Eigen::VectorXd> own = own_part(column, reproduced);
+    if (!own) continue;
+    if (const double gain = gain_along(*own, residuals); gain > kSmallestGain)
+      held.push_back({i, slope_along(model, fit, i) < 0, gain});
   }
   return held;
 }

@@ -183,7 +183,7 @@ struct ValidityEntry {
   const char *key, *unit, *meaning;
 };
 constexpr ValidityEntry kValidity[] = {
-    {"flank", "N", "tooth force on the driving flank (limit: Rcs >= 0)"},
+    {"flank", "N", "tooth force on the driving flank (limit: Rcs >= 0; none with two flanks)"},
     {"turned", "N", "tooth force at negative speed with one line of action (limit: Rcs <= 0)"},
     {"film", "N", "film force (limit: Fh <= 0)"},
     {"point", "mm", "distance of the film force from z2 (limit: r4 of the port plate)"},

@@ -275,13 +275,18 @@ struct TurnWithRates {
 struct Wanted {
   bool errors = false;  // under hydraulic pressure every direction once more, with coarse rates
   bool means = false;   // of the oil
+  std::optional<std::vector<double>> theta_deg = {};  // instead of the case's samples
 };
 
 // Takes from `variables` those that the hydraulic pressure has no derivatives by.
 TurnWithRates turn_of(const study::PreparedCase& ready, const Case& base,
                       const std::vector<Variable>& all, const Wanted& wanted,
                       std::vector<std::size_t>& variables, const study::PartProgress& progress_of) {
-  TurnWithRates turn{ready.the_case, ready.samples(study::Way::driven), {}, {}, {}, {}, {}};
+  const auto samples = [&] {
+    return wanted.theta_deg ? sample_angles(ready.the_case, ready.pressure, *wanted.theta_deg)
+                            : ready.samples(study::Way::driven);
+  };
+  TurnWithRates turn{ready.the_case, samples(), {}, {}, {}, {}, {}};
   if (!ready.hydraulics) return turn;
   std::vector<hydraulics::Neighbours> parameters;
   std::vector<std::size_t> kept;
@@ -678,11 +683,13 @@ std::vector<Variable> continuous_variables(const Case& base) {
 }
 
 std::vector<Variable> differentiate_reactions(const Case& base, const ReactionVisitor& visit,
-                                              const study::PartProgress& progress_of) {
+                                              const study::PartProgress& progress_of,
+                                              const std::optional<std::vector<double>>& theta_deg) {
   const std::vector<Variable> all = continuous_variables(base);
   const TurnDerivatives turn(
       study::prepare(base, progress_of), base, all,
-      numbers(all.size(), [&](std::size_t v) { return is_exact(all[v], base); }), {}, progress_of);
+      numbers(all.size(), [&](std::size_t v) { return is_exact(all[v], base); }),
+      {.theta_deg = theta_deg}, progress_of);
   std::vector<Variable> found;
   for (const std::size_t v : turn.variables()) found.push_back(all[v]);
   if (!found.empty()) turn.for_each_row(visit);

@@ -162,6 +162,12 @@ SobolIndices sobol_indices(const Response& response, std::size_t outputs,
     const double noise = is_computed(column.front()) ? centre(column) : HUGE_VAL;
     if (noise < kNoVariation) estimate(kept.size(), n, ordered, column, found);
     const double round_off = std::max(kOfEstimator, noise);
+    if (n == 1 && is_computed(found[0])) {
+      // All of the variance is of the one: no estimate, whose interval would mean nothing.
+      all.first.push_back({1, 1, 1});
+      all.total.push_back({1, 1, 1});
+      continue;
+    }
     for (std::size_t i = 0; i < n; ++i) {
       const double* const row = found.data() + 6 * i;
       all.first.push_back(is_computed(row[0]) ? estimate_of(row, round_off)

@@ -7,6 +7,8 @@
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/results/column_values.h"
+#include "bentaxis/results/periodic_lines.h"
 #include "bentaxis/study/published_section.h"
 
 namespace bentaxis::designs {
@@ -51,6 +53,15 @@ Further numbers_of(const std::vector<ValidationRow>& rows, const compare::Publis
 // Where both models assume the same, they differ by their numerical errors.
 bool same_assumptions(const study::ComparisonResult& result) { return result.changes.empty(); }
 
+// Of the models, at the samples of the case.
+std::vector<double> differences(const study::ComparisonResult& result, const std::string& channel) {
+  std::vector<double> list = column_of(result.analytic, result.analytic.find(channel));
+  const std::size_t other = result.multibody.find(channel);
+  for (std::size_t row = 0; row < list.size(); ++row)
+    list[row] = std::abs(list[row] - result.multibody.at(row, other));
+  return list;
+}
+
 std::vector<ValidationCurve> curves_of(const study::ComparisonResult& result,
                                        const UncertaintyResult& uncertainty) {
   std::vector<ValidationCurve> curves;
@@ -61,16 +72,19 @@ std::vector<ValidationCurve> curves_of(const study::ComparisonResult& result,
   const study::Outcome::Held& reference = held->second;
   const ResultTable& data = reference.reference;
   const auto absolute = study::reference_in(result.options.with).absolute;
-  const std::size_t stride = uncertainty.angles / uncertainty.theta_deg.size();
   for (const CurveBand& band : uncertainty.bands) {
     const compare::ReferenceChannel* found = result.with->find("analytic", band.channel.name);
     const std::size_t column = data.find(band.channel.name);
-    if (found == nullptr || !found->comparison.compared() || column == data.columns() ||
-        data.rows() != uncertainty.angles)
-      continue;
+    if (found == nullptr || !found->comparison.compared() || column == data.columns()) continue;
     ValidationCurve curve;
     curve.channel = band.channel;
-    const std::size_t of_models = result.analytic.find(band.channel.name);
+    const std::vector<double>& angles = data.theta_deg;
+    const std::size_t simulated = reference.result.find(band.channel.name);
+    const std::vector<double> deviations = on_lines(uncertainty.theta_deg, band.deviation, angles);
+    const std::vector<double> numerical =
+        same_assumptions(result)
+            ? on_lines(result.analytic.theta_deg, differences(result, band.channel.name), angles)
+            : std::vector<double>(angles.size(), 0);
     const auto of_unit = absolute.find(band.channel.unit);
     const double tolerance = found->comparison.tolerance * found->comparison.peak +
                              (of_unit == absolute.end() ? 0 : of_unit->second);
@@ -83,23 +97,19 @@ std::vector<ValidationCurve> curves_of(const study::ComparisonResult& result,
     };
     double worst = -1;
     std::size_t within = 0;
-    for (std::size_t i = 0; i < uncertainty.theta_deg.size(); ++i) {
-      const std::size_t row = i * stride;
+    for (std::size_t row = 0; row < data.rows(); ++row) {
       if (!is_computed(data.at(row, column))) continue;
-      const double simulation = result.analytic.at(row, of_models);
-      const double other = result.multibody.at(row, of_models);
-      const bool both = same_assumptions(result) && is_computed(other);
-      const ComparisonError error{simulation, data.at(row, column),
-                                  both ? std::abs(simulation - other) : 0, band.deviation[i],
+      const ComparisonError error{reference.result.at(row, simulated), data.at(row, column),
+                                  is_computed(numerical[row]) ? numerical[row] : 0, deviations[row],
                                   of_half_width(half_width(row))};
-      curve.theta_deg.push_back(uncertainty.theta_deg[i]);
+      curve.theta_deg.push_back(angles[row]);
       curve.data.push_back(error.data);
       within += error.within() ? 1 : 0;
       const double ratio = error.error() == 0 ? 0 : std::abs(error.error()) / error.validation();
       if (ratio > worst) {
         worst = ratio;
         curve.worst = error;
-        curve.worst_deg = uncertainty.theta_deg[i];
+        curve.worst_deg = angles[row];
       }
     }
     if (curve.data.empty()) continue;

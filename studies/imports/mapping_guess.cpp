@@ -76,7 +76,10 @@ class Guesser {
     for (const AngleMap& choice : choices) {
       take_turn(choice);
       for (const Found& found : phases()) {
-        if (!best || found.score < least) {
+        // A curve that is the same both ways turns forwards: round-off must not decide.
+        constexpr double kTie = 1e-3;
+        const double ahead = !best ? 0 : (best->sign - found.sign) / 2 * kTie;
+        if (!best || found.score < least - ahead) {
           least = found.score;
           best = found;
           best->angle = choice;

@@ -140,11 +140,19 @@ std::vector<std::pair<std::string, int>> axis_readings(const std::string& name) 
 }
 
 int piston_in(const std::string& name, int pistons) {
+  // A number behind these is that of a column.
+  static const std::vector<std::string> kCounters = {
+      "column", "col", "channel", "chan",  "ch",     "ai",     "var",    "variable",
+      "signal", "sig", "data",    "trace", "series", "sensor", "spalte", "kanal"};
   int first = 0;
   for (const bool of_piston : {true, false}) {
-    bool near = false;  // behind a word for pistons
+    bool near = false;            // behind a word for pistons
+    bool counts_columns = false;  // behind a word for columns
     for (const auto& word : words_of(name)) {
       if (word.find('?') != std::string::npos) continue;
+      const std::string stem = word.substr(0, word.find_last_not_of("0123456789") + 1);
+      counts_columns = !near && (stem.empty() ? counts_columns : contains(kCounters, stem));
+      if (counts_columns) continue;
       near = near || word.find("pist") != std::string::npos || word.find("kolben") == 0 ||
              word.find("cyl") == 0 || word.find("chamber") == 0;
       const auto digits = word.find_last_not_of("0123456789") + 1;
@@ -206,11 +214,19 @@ bool is_record(const ForeignTable& table, std::size_t column, double degrees_per
   const int digits = table.digits[column];
   if (digits > 0 && digits < 12) {
     // Half a unit of the last digit; but 0, 0.5, 1, .. are exact, which equal steps show.
-    double uneven = 0;
-    const double step = (angles.back() - angles.front()) / static_cast<double>(angles.size() - 1);
-    for (std::size_t i = 0; i < angles.size(); ++i)
-      uneven =
-          std::max(uneven, std::abs(angles[i] - angles.front() - step * static_cast<double>(i)));
+    const double whole = angles.back() - angles.front();
+    double uneven = 0, off_grid = 0, least = span;
+    for (std::size_t i = 1; i < angles.size(); ++i)
+      least = std::min(least, std::abs(angles[i] - angles[i - 1]));
+    const double step = whole / static_cast<double>(angles.size() - 1);
+    // So do multiples of a step, where rows are missing.
+    const double grid = whole / std::round(span / least);
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+      const double past = angles[i] - angles.front();
+      uneven = std::max(uneven, std::abs(past - step * static_cast<double>(i)));
+      off_grid = std::max(off_grid, std::abs(past - grid * std::round(past / grid)));
+    }
+    uneven = std::min(uneven, off_grid);
     map.rounding_deg = std::min(uneven, std::abs(scale) * half_of_last_digit(largest, digits));
     if (map.rounding_deg < 1e-9) map.rounding_deg = 0;
   }

@@ -259,6 +259,7 @@ std::vector<fs::path> make_reference(const Case& the_case, bool changed, const f
     std::string why = outcome.error;
     if (!mapping.empty())
       why = replace_all(why, (folder.here() / "description.toml").string(), mapping.string());
+    why = replace_all(why, (folder.here() / curve_name).string(), curve.string());
     why = replace_all(why, folder.here().string(), out.string());
     const std::string name = (mapping.empty() ? curve : mapping).string();
     throw InputError((why.find(name) == std::string::npos ? name + ": " : "") + why);

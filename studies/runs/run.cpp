@@ -155,6 +155,13 @@ ModelRun run(const PreparedCase& ready, const Samples& samples, const RunOptions
   return result;
 }
 
+ResultTable run_at_angles(const PreparedCase& ready, const std::vector<double>& theta_deg,
+                          const RunOptions& options, const PartProgress& progress_of) {
+  if (options.way != Way::driven) throw InputError("given angles are not integrated");
+  return run(ready, sample_angles(ready.the_case, ready.pressure, theta_deg), options, progress_of)
+      .table;
+}
+
 MotionTable run_states(const PreparedCase& ready, const States& states, const RunOptions& options,
                        const PartProgress& progress_of, ResultTable* teeth, BodyLoadTable* loads) {
   check(options);

@@ -101,7 +101,12 @@ struct Facts {
   std::optional<Turn> turn;
   std::optional<Walls> walls;
 
+  // A default that a file states, as those that commands write do, is nobody's number either.
   bool defaulted(const std::string& table, const std::string& key) const {
+    const Parameter& parameter = parameter_of(standard_registry(), table, key);
+    if (const auto value = default_of(parameter, the_case);
+        value && value == value_of(parameter, the_case))
+      return true;
     for (const InputEntry& entry : the_case.entries)
       if (entry.table == table && entry.key == key) return entry.defaulted;
     return the_case.entries.empty();

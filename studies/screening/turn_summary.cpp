@@ -139,16 +139,22 @@ std::string not_valid_text(const std::vector<analytic::ValidityLimit>& limits) {
 
 std::string timing_answer(const std::vector<TimingRow>& rows) {
   std::vector<std::string> names;
-  std::size_t limited = 0;
+  std::size_t limited = 0, meant = 0;
   for (const TimingRow& row : rows) {
-    if (row.flagged) names.push_back(row.quantity);
+    if (row.flagged && !row.meant.empty())
+      ++meant;
+    else if (row.flagged)
+      names.push_back(row.quantity);
     limited += row.limit.has_value();
   }
-  if (names.empty()) return "Port timing: within all limits.";
+  if (names.empty() && meant > 0)
+    return fmt::format("{}{} of {} quantities with a limit exceed it, as intended.", kPortTiming,
+                       meant, limited);
+  if (names.empty()) return std::string(kPortTiming) + "within all limits.";
   return fmt::format(
-      "Port timing: {} of {} quantities with a limit exceed it: {} (pressure --advise: what to "
+      "{}{} of {} quantities with a limit exceed it: {} (pressure --advise: what to "
       "change).",
-      names.size(), limited, fmt::join(names, ", "));
+      kPortTiming, names.size(), limited, fmt::join(names, ", "));
 }
 
 std::vector<analytic::ValidityLimit> limits_of_turn(Case the_case, const Assumptions& assumptions,

@@ -7,6 +7,7 @@
 
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/piece_progress.h"
 #include "bentaxis/study/published_section.h"
@@ -26,6 +27,18 @@ std::vector<double> ratios(const std::pair<double, double>& range, int count) {
   for (int i = 0; i < count; ++i)
     values.push_back(low * std::pow(high / low, static_cast<double>(i) / (count - 1)));
   return values;
+}
+
+// One piston stands for all, and its spin is integrated by Simbody.
+void require_even_transfer(const Case& the_case) {
+  if (the_case.pump.transfer.is_even()) return;
+  std::vector<std::string> even;
+  for (const TransferTraits& transfer : kTransfers)
+    if (transfer.even) even.push_back('"' + std::string(transfer.name) + '"');
+  throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") +
+                   "[transfer] kind = \"" + to_string(the_case.pump.transfer.kind) +
+                   "\": must be one of " + joined(even) +
+                   " in an inertia study: the block has to turn exactly as the shaft does");
 }
 
 void compare_models_and_scenes(InertiaStudy& s) {
@@ -74,6 +87,7 @@ bool InertiaStudy::agrees() const {
 
 InertiaStudy run_inertia_study(const Case& as_read, const InertiaOptions& options,
                                const PartProgress& progress_of) {
+  require_even_transfer(as_read);
   // Of each speed both pistons by both models in two scenes, and what is made of the fastest.
   require_memory(as_read, Kept::lumped, Way::driven, options.speeds.size() + 1);
   InertiaStudy s;

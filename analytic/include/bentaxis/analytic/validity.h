@@ -32,7 +32,7 @@ struct ValidityLimit {
 double share_beyond(const std::vector<ValidityLimit>& limits);
 
 /// Checks a table of results (of either model) against the limits of what was modelled: tooth force
-/// on the driving flank, and how far two flanks differ from the one that the paper prints, film
+/// on the modelled flank, and how far two flanks differ from the one that the paper prints, film
 /// force that only pushes, its point within the port plate, thrust of the tapered bearing, friction
 /// that only takes energy, bore forces that do no work, no more pairs of teeth in touch than are
 /// looked at.

@@ -197,20 +197,48 @@ struct ReferenceChannel {
 /// A result held against a reference.
 struct Judgement {
   std::vector<ReferenceChannel> channels;  ///< reactions and what follows from them
-  bool resampled = false;                  ///< the reference had other angles
-  double resampling_error = 0;             ///< estimate where it is largest, over peak
-  ResultTable reference;                   ///< at the angles of the result
-  ResultTable low, high;                   ///< with a tube: what it spans there; else empty
-  ResultTable resampling;                  ///< the error of resampling there, estimated
+  bool resampled = false;       ///< the reference had other angles, and the result could not follow
+  double resampling_error = 0;  ///< estimate where it is largest, over peak
+  ResultTable reference;        ///< at the angles of the result
+  ResultTable low, high;        ///< with a tube: what it spans there; else empty
+  ResultTable resampling;       ///< how far it may be off there: by resampling, estimated, or by
+                                ///< the rounding of its angles
+  ResultTable result;           ///< of a model that followed: at the angles of all curves
+  bool at_own_angles = false;   ///< a model followed to angles that it had not been run at
+  struct Gap {
+    double from_deg = 0, to_deg = 0;
+  };
+  /// Where the curves have no points for long, so that nothing is compared.
+  std::vector<Gap> gaps;
 
   bool agrees() const;  ///< something was compared and nothing failed
 };
 
-/// Compares: |difference| <= absolute + relative x peak at every angle of the result, peak =
-/// largest magnitude of the reaction in the reference (or the load scale where that is zero). At
-/// angles that the reference lacks it is resampled by a periodic cubic spline, and the error of
-/// that, estimated around each angle, is allowed on top. With a tube, the
-/// value must lie within the band the reference spans over +- tube_deg, widened by the tolerance.
+/// A model at any angles of a turn, deg. The table's angles may be off by round-off.
+using ResultAt = std::function<ResultTable(const std::vector<double>& theta_deg)>;
+
+/// Rows of a table at these angles of a turn; nothing where it lacks one.
+std::optional<ResultTable> rows_at(const ResultTable& table, const std::vector<double>& theta_deg);
+
+/// Compares at the angles of the curves: |difference| <= absolute + relative x peak, peak = largest
+/// magnitude of the reaction in the reference (or the load scale where that is zero). Where the
+/// angles of a curve are rounded, what the model changes within that is allowed on top. With a
+/// tube, the value must lie within the band the reference spans over +- tube_deg, widened by the
+/// tolerance.
+/// @throws InputError where a curve has no points over more than 30 deg, and these are not the
+///         angles of `case_theta_deg`
+/// @param curves  all that hold this model; no channel may be in two of them
+/// @param case_theta_deg  angles of the case's own samples
+Judgement judge(const ReferenceDescription& description, const std::vector<ReferenceCurve>& curves,
+                const ResultAt& result_at, const std::vector<double>& case_theta_deg,
+                const ZeroScales& zero_scales);
+
+/// The same at the angles of a result that cannot follow: |difference| <= absolute + relative x
+/// peak at every angle of the result, peak = largest magnitude of the reaction in the reference (or
+/// the load scale where that is zero). At angles that the reference lacks it is resampled by a
+/// periodic cubic spline, and the error of that, estimated around each angle, is allowed on top.
+/// With a tube, the value must lie within the band the reference spans over +- tube_deg, widened by
+/// the tolerance.
 /// @throws InputError where a curve with gaps would have to be resampled.
 /// @param curves  all that hold this model; no channel may be in two of them
 Judgement judge(const ReferenceDescription& description, const std::vector<ReferenceCurve>& curves,

@@ -40,5 +40,8 @@ void require_constant_speed(const Case& the_case);
 /// direction of rotation (speed < 0) an integrated run takes `falling` angles -360 i/s.
 Samples sample_case(const Case& the_case, const PressureTrace& pressure, int revolutions = 1,
                     bool falling = false, const SampleRange& range = {});
+/// Samples at any angles, deg.
+Samples sample_angles(const Case& the_case, const PressureTrace& pressure,
+                      std::vector<double> theta_deg);
 
 }  // namespace bentaxis

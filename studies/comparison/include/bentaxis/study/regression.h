@@ -43,9 +43,10 @@ struct Outcome {
   std::string other_case;  ///< in what its case differs from the one whose results were held, or ""
   std::vector<std::pair<std::string, std::string>> properties;
   struct Held {
-    ResultTable result;
+    ResultTable result;                ///< at the angles of the reference where a model can follow
     ResultTable reference, low, high;  ///< at its angles; with a tube what the reference spans
-    ResultTable resampling;            ///< the reference's error by resampling, estimated
+    ResultTable resampling;            ///< how far the reference may be off (compare::Judgement)
+    std::vector<compare::Judgement::Gap> gaps = {};  ///< where it has no points for long
   };
   std::map<std::string, Held> held;  ///< by model
   /// Of one that differs, where it was looked for (designs/explain.h).
@@ -66,13 +67,15 @@ Outcome hold(const ReferencePlace& place, const PartProgress& progress_of = sile
 
 /// Results that are there already.
 using ResultOf = std::function<ReferenceRun(Model)>;
+/// The same model at other angles, deg; no function where it cannot be run there.
+using ResultAt = std::function<ResultTable(Model, const std::vector<double>& theta_deg)>;
 using CaseOf = std::function<const Case&(Model)>;
 
 /// Holds results to the one reference of a folder: a third curve beside those of both models. Its
 /// own case is not run; what differs in it is said (`other_case`).
 /// @throws InputError where the folder cannot be used
 Outcome hold_results(const std::filesystem::path& folder, const CaseOf& case_of,
-                     const ResultOf& result_of);
+                     const ResultOf& result_of, const ResultAt& result_at = {});
 /// The one reference that `hold_results` would take. @throws InputError
 compare::ReferenceDescription reference_in(const std::filesystem::path& folder);
 

@@ -59,11 +59,13 @@ using ReactionVisitor = std::function<void(std::size_t row, const std::vector<do
                                            const std::vector<double>& derivatives)>;
 /// Exact derivatives of all reactions over a driven turn, by the analytic model, with respect to
 /// every continuous variable that has them.
+/// @param theta_deg  angles; without them those of the case's samples
 /// @return these variables, in the order of the derivatives
 /// @throws InputError, ComputationError
 std::vector<Variable> differentiate_reactions(
     const Case& base, const ReactionVisitor& visit,
-    const study::PartProgress& progress_of = study::silent());
+    const study::PartProgress& progress_of = study::silent(),
+    const std::optional<std::vector<double>>& theta_deg = std::nullopt);
 
 /// Derivatives at the case itself. Exact are those by the analytic model of statistics of
 /// reactions, without teeth, with respect to what pump, speed and pressure are made of; under

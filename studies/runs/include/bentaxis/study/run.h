@@ -108,6 +108,10 @@ ModelRun run(const PreparedCase& ready, const RunOptions& options,
 ModelRun run(const PreparedCase& ready, const Samples& samples, const RunOptions& options,
              const PartProgress& progress_of = silent());
 
+/// One turn's angles of a driven run, deg, in any order.
+ResultTable run_at_angles(const PreparedCase& ready, const std::vector<double>& theta_deg,
+                          const RunOptions& options, const PartProgress& progress_of = silent());
+
 /// Reactions at given states of shaft and block, as options.model and options.assumptions say;
 /// options.scene.method of the multibody model. The pump is whole.
 /// @throws InputError where the options say something that has no effect on given states

@@ -66,6 +66,8 @@ std::vector<std::string> limit_answers(const std::vector<analytic::ValidityLimit
 /// "over 7.5 % of the turn": the largest share in which a limit does not hold; "" where all do.
 std::string not_valid_text(const std::vector<analytic::ValidityLimit>& limits);
 
+/// How every such sentence begins.
+inline constexpr const char* kPortTiming = "Port timing: ";
 /// Which verdicts on the timing of the ports exceed their limits, in a sentence.
 std::string timing_answer(const std::vector<TimingRow>& rows);
 
