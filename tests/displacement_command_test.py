@@ -105,6 +105,12 @@ class DisplacementTest(ProgramTest):
         self.assertGreater(len(above), 0)
         answer = self.report()["verdict"]["answers"][-1]
         self.assertIn(f"by Wilson at {len(above)} of 30 points", answer)
+        # Of both readings of the flow, as the table counts them.
+        table = self.section("Derived displacement")["table"]
+        counted = [(row[0], row[1], next(row[i] for i, column in enumerate(table["columns"]) if "points above" in column)) for row in table["rows"]]
+        for method, meter, count in counted:
+            other = "" if meter == counted[0][1] else f", flow {meter}"
+            self.assertEqual(f"by {method}{other} at {count} of 30 points" in answer, bool(count), (method, meter, count, answer))
         facts = dict(self.section("Derived displacement")["facts"])
         places = facts["above 100 % by Wilson, at delivery pressure"]
         for row in above:

@@ -45,6 +45,41 @@ uncertainty = 50
 """
 
 
+BETWEEN = """schema = 1
+[[condition]]
+name = "low"
+set = ["operation.speed_rpm=1000", "pressure.delivery_bar=95"]
+[[unknown]]
+parameter = "friction.shaft_torque_factor"
+between = [0.9, 1]
+[[unknown]]
+parameter = "friction.piston_coulomb_N"
+between = [20, HIGH]
+[[unknown]]
+parameter = "pressure.delivery_bar"
+condition = "low"
+between = [90, 110]
+[[number]]
+output = "mean:Td"
+value = 520
+uncertainty = 0.5
+[[number]]
+output = "mean:Td"
+value = 180
+uncertainty = 0.5
+condition = "low"
+[[number]]
+output = "peak:Rb1"
+value = 17400
+uncertainty = 40
+condition = "low"
+[[number]]
+output = "displacement_cm3"
+value = 100.5
+uncertainty = 0.2
+"""
+
+
 class IdentifyTest(ProgramTest):
     def case(self):
         return program.REPO / "cases" / "bap63_rated.toml"
@@ -93,6 +128,22 @@ class IdentifyTest(ProgramTest):
         self.assertLess(float(row["profile_low"]), float(row["identified"]))
         # The case's bore, 22.5 mm, gives 292.5 Nm; 1 Nm is 0.04 mm.
         self.assertAlmostEqual(float(row["identified"]), 22.5, delta=0.05)
+
+    def test_what_a_bound_costs_counts_what_the_other_unknowns_make_up_for(self):
+        """By how much chi-square would fall is how much it falls with a wider range: here all but what no unknown can change."""
+        case = program.REPO / "cases" / "studies" / "nine_pistons.toml"
+        chi_square = {}
+        for high in (60, 120):
+            # An unknown of a condition stands for the setting of that condition.
+            (self.folder / "data.toml").write_text(BETWEEN.replace("HIGH", str(high)))
+            out = self.run_program("identify", case, "--set", "pressure.kind=ideal", "--data", "data.toml", "--fit-only", "--out", "out").out
+            chi_square[high] = float(re.search(r"chi-square ([\d.]+)", out)[1])
+            if high == 60:
+                self.assertIn("friction.piston_coulomb_N ends at the upper bound 60", out)
+                promised = float(re.search(r"fall by about ([\d.]+) there", out)[1])
+        self.assertNotIn("bound 120", out)
+        self.assertGreater(promised, 5)
+        self.assertAlmostEqual(promised, chi_square[60] - chi_square[120], delta=0.02 * promised)
 
     def test_an_unknown_at_its_bound_is_not_called_undetermined(self):
         """The data want a bore of 22.5 mm, which the range leaves out: by how much chi-square would fall is the square of the residual."""

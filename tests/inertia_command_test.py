@@ -61,6 +61,8 @@ class InertiaTest(WithFolder):
         self.assertEqual({p.name for p in (self.folder / "out").iterdir()},
                          {"inertia.html", "inertia.json", "inertia.csv", "inertia_errors.csv", "inertia_map.csv"})
         self.assertIs(report["verdict"]["agrees"], True)
+        missed = report["verdict"]["headline"].startswith("Two point masses are not accurate enough")
+        self.assertEqual(report["verdict"]["word"], "Two masses are not enough" if missed else "Two masses are enough")
         # Two speeds, two reactions: a window for each kind of piston, and the order of the two.
         rows = report["published"]["rows"]
         self.assertEqual([row["verdict"] for row in rows], ["inside"] * 12)
@@ -112,6 +114,17 @@ class InertiaTest(WithFolder):
                 for word in words:
                     self.assertIn(word, line)
                 self.assertFalse((self.folder / "new").exists())
+
+    def test_resolved_teeth_are_held_to_what_their_stiffness_leaves(self):
+        """Without load their forces are their stiffness times the round-off of a gap."""
+        self.run_program("inertia", "bap63_teeth", "--speeds", "1500", "--map-size", "2", "--out", "out")
+        self.assertTrue(json.loads((self.folder / "out" / "inertia.json").read_text())["verdict"]["agrees"])
+
+    def test_a_block_that_does_not_turn_as_the_shaft_is_refused(self):
+        for case, kind in (("bap63_cardan", "cardan"), ("bap63_tapered_pistons", "pistons")):
+            line = self.run_program("inertia", case, "--out", "new", status=BAD_INPUT).stderr.splitlines()[-1]
+            self.assertIn(f'[transfer] kind = "{kind}": must be one of "gear", "constant_velocity", "double_cardan" in an inertia study', line)
+            self.assertFalse((self.folder / "new").exists())
 
     def test_page_draws(self):
         browser = shutil.which("chromium")

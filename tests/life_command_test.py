@@ -173,7 +173,7 @@ class LifeTest(ProgramTest):
         for text, *words in (("speed_rpm\n1500\n", "duty.csv", "share"),
                              ("theta_deg,pressure_bar\n0,1\n", "duty.csv:1: columns theta_deg, pressure_bar: the column \"share\" is missing"), ("share,speed_rpm\n1,1500\n0,1500\n", "duty.csv:3", "share = 0"),
                              ("share,tilt_deg\n1,95\n", "duty.csv:2", "tilt_deg = 95", "[0, 90)"), ("share,kind\n1,0\n", "several tables"),
-                             ("share,speed_rpm,operation.speed_rpm\n1,1,2\n", "speed_rpm", "more than once"), ("share,share\n1,1\n", "duty.csv:1", "duplicate column"),
+                             ("share,speed_rpm,operation.speed_rpm\n1,1,2\n", "duty.csv:1", "operation.speed_rpm", "duplicate column"), ("share,share\n1,1\n", "duty.csv:1", "duplicate column"),
                              ("share\n", "no row"), ("share,backlash_um\n1,2\n", "backlash_um")):
             with self.subTest(text):
                 (self.folder / "duty.csv").write_text(text)

@@ -120,6 +120,9 @@ TEST(MappingNames, WordsAndAxes) {
 TEST(MappingNames, NumberOfAPiston) {
   EXPECT_EQ(piston_in("Rs_3", 7), 3);
   EXPECT_EQ(piston_in("Rs_7", 7), 7);
+  for (const char* column : {"column 3", "Column_3", "ch3", "Channel 3 (N)", "AI3", "Kanal 3"})
+    EXPECT_EQ(piston_in(column, 7), 0) << column;
+  EXPECT_EQ(piston_in("channel 5 piston 3", 7), 3);
   EXPECT_EQ(piston_in("Rs_8", 7), 0);
   EXPECT_EQ(piston_in("Rs_0", 7), 0);
   EXPECT_EQ(piston_in("Rs_1", 7), 1);

@@ -108,6 +108,22 @@ class Optimise(unittest.TestCase):
                 for limit in (a for a in alone["answers"] if a.startswith("Not valid")):
                     self.assertIn(limit, done.stdout)
 
+    def test_a_limit_on_an_objective_is_named_where_it_stops_a_design(self):
+        """And the case that is written states defaults, which are nobody's doubtful numbers."""
+        nine = REPO / "cases" / "studies" / "nine_pistons.toml"
+        done = self.run_program("--set", "pressure.kind=ideal", "--vary", "pump.tilt_deg=25:42", "--vary", "pump.bore_diameter_mm=15:19",
+                                "--minimise", "peak:Rb1", "--maximise", "displacement_cm3", "--subject-to", "peak:Rb1 <= 45000",
+                                "--population", "16", "--generations", "8", case=nine)
+        largest = next(line for line in done.stdout.splitlines() if line.startswith("largest displacement_cm3"))
+        self.assertIn("at its limit: peak:Rb1 <= 45000 N", largest)
+        lowest = next(line for line in done.stdout.splitlines() if line.startswith("lowest peak:Rb1"))
+        self.assertNotIn("<= 45000", lowest)
+        for name in ("nine_pistons", self.out / "chosen_1.toml"):
+            shown = subprocess.run([PROGRAM, "show", nine if name == "nine_pistons" else name, "--strict", "--set",
+                                    "operation.samples_per_revolution=37"], cwd=self.folder, capture_output=True,
+                                   text=True, timeout=SECONDS)
+            self.assertEqual(shown.returncode, DONE, shown.stderr)
+
     def test_searches_that_disagree_say_so(self):
         """0 % of the front alone: nothing that a front could be trusted for. Of one objective the best values are compared."""
         many = [item for k in range(1, 8) for item in ("--vary", ["pump.tilt_deg=25:42", "pump.bore_diameter_mm=20:26",

@@ -226,6 +226,8 @@ class SaidTest(unittest.TestCase):
                 self.assertEqual(done.returncode, 0, done.stderr)
         rows = {row["code"]: row for row in json.loads((self.folder / "out" / "pressure.json").read_text())["timing"]}
         self.assertEqual({code for code, row in rows.items() if row["meant"]}, codes)
+        answers = json.loads((self.folder / "out" / "pressure.json").read_text())["verdict"]["answers"]
+        self.assertRegex(answers[-1], rf"^Port timing: {len(codes)} of \d+ quantities with a limit exceed it, as intended\.$")
         # The plate that could be built gives its reasons itself.
         case = REPO / "cases" / "bap63_rated_timed_plate.toml"
         self.assertEqual(run("pressure", case, "--strict", cwd=self.folder).returncode, 0)
@@ -234,8 +236,18 @@ class SaidTest(unittest.TestCase):
         case = REPO / "cases" / "bap63_rated_hydraulic.toml"
         done = run("pressure", case, "--suction-speed", "-0.5", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
-        row = json.loads((self.folder / "out" / "pressure.json").read_text())["timing"][-1]
+        report = json.loads((self.folder / "out" / "pressure.json").read_text())
+        row = report["timing"][-1]
         self.assertEqual((row["code"], row["limit"], row["flagged"]), ("suction-speed", 1500, True))
+        # The first answer, and what is said of all limits counts it.
+        answers = report["verdict"]["answers"]
+        self.assertEqual(done.stdout.splitlines()[1:1 + len(answers)], answers)
+        self.assertEqual(answers[0], f"Suction speed {row['value']:.4g} rpm: {row['text']}. The case turns at 1500 rpm.")
+        [timing] = [answer for answer in answers if answer.startswith("Port timing: ")]
+        flagged = [r["quantity"] for r in report["timing"] if r["flagged"]]
+        self.assertIn(row["quantity"], flagged)
+        self.assertIn(f": {len(flagged)} of ", timing)
+        self.assertIn(", ".join(flagged), timing)
         # As asked for: the least pressure at the speed found, and a little beyond it.
         for factor, above in ((0.998, True), (1.002, False)):
             run("pressure", case, "--set", f"operation.speed_rpm={row['value'] * factor}", "--out", "at", cwd=self.folder)

@@ -616,7 +616,8 @@ TEST(Samples, PartsOfARunAreItsRows) {
 
 TEST(PeriodicLines, GoThroughThePointsAndAcrossTheEndOfTheTurn) {
   const std::vector<double> theta = {350, 10, 100, 200}, values = {1, 3, 12, not_computed()};
-  EXPECT_EQ(on_lines(theta, values, theta), (std::vector<double>{1, 3, 12, 8}));
+  EXPECT_EQ(on_lines(theta, values, theta),
+            (std::vector<double>{1, 3, 12, 12 + 100.0 / 250 * (1 - 12)}));
   EXPECT_EQ(on_lines(theta, values, {0, 360, -5, 55, 375, 225}),
             (std::vector<double>{2, 2, 1.5, 7.5, 3.5, 6.5}));
   EXPECT_EQ(on_lines({40}, {7}, {0, 40, 300}), (std::vector<double>{7, 7, 7}));

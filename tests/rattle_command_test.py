@@ -196,6 +196,15 @@ class RattleTest(ProgramTest):
                          "--delivery-bar", "275:275:#1", "--out", "out")
         self.assertEqual([row["class"] for row in self.table()], ["reverses"] * 2 + ["carries"] * 2)
 
+    def test_pressures_that_could_not_be_computed_count(self):
+        teeth = [word for change in ("contact=compliant", "flanks=two", "stiffness_N_per_um=100", "backlash_um=20", "dissipation_s_per_m=0.5")
+                 for word in ("--set", "gear." + change)]
+        result = self.run_program("rattle", program.REPO / "cases" / "bap63_rated_hydraulic.toml", *teeth, "--speeds", "60,80", "--delivery-bar",
+                                  "50,275", "--turns", 2, "--discard", 2, "--out", "out", status=3)
+        self.assertIn("hits both flanks at 2 of 4 points, 2 could not be computed", result.out)
+        self.assertIn("At 50 bar, of the pressures of the map that could be computed the nearest to the case's 275 bar: ", result.out)
+        self.assertIn("Could not be computed: 275 bar.", result.out)
+
 
 if __name__ == "__main__":
     if len(sys.argv) < 3:

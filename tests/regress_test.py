@@ -423,17 +423,18 @@ class ForeignCurveTest(RegressTest):
                                           "--accept"), "mine", "not empty")
 
     def test_steep_edge_within_a_tube(self):
-        """A pressure edge half a degree off fails at its flank, and passes in a tube of one degree."""
+        """A pressure edge half a degree off fails at its flank, and passes in a tube of one degree: but for what the curve goes on by
+        until the later edge, 2.5 % of the peak of yh."""
         case = Case(**{"operation.samples_per_revolution": 360, "pressure.transition_deg": 4.0})
         case.write(self.folder / "case.toml")
         self.run_program("reference", "golden", "case.toml", "--angles", "720", "--out", "ref")
         d = self.folder / "ref" / "description.toml"
-        text = d.read_text().replace('kind = "golden"', 'kind = "external"').replace("1e-11", "1e-2")
+        text = d.read_text().replace('kind = "golden"', 'kind = "external"').replace("1e-11", "3e-2")
         text = text.replace("samples_per_revolution = 720", "samples_per_revolution = 360")
         case.set({"pressure.delivery_start_deg": 180.5}).write(self.folder / "case.toml")
         d.write_text(text)
         self.regress("ref", status=OUT_OF_TOLERANCE)
-        d.write_text(text.replace("relative = 1e-2", "relative = 1e-2\ntube_deg = 1.0"))
+        d.write_text(text.replace("relative = 3e-2", "relative = 3e-2\ntube_deg = 1.0"))
         self.regress("ref")
         case.set({"pressure.delivery_start_deg": 182.0}).write(self.folder / "case.toml")
         self.regress("ref", status=OUT_OF_TOLERANCE)

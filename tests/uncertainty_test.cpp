@@ -372,6 +372,15 @@ TEST(SobolIndices, OfIshigamisFunctionLieInTheirBands) {
     EXPECT_LT(found.first[i].high - found.first[i].low, 0.1) << i;  // and say something
     EXPECT_LT(found.total[i].high - found.total[i].low, 0.1) << i;
   }
+  // One number alone makes the whole variance: nothing is estimated.
+  const SobolIndices one_alone =
+      sobol_indices(response_of([](std::span<const double> x) { return std::sin(x[0]); }, 1), 1,
+                    numbers({"normal(1, 0.2)"}), 64, 1, 1);
+  for (const Estimate& index : {one_alone.first[0], one_alone.total[0]}) {
+    EXPECT_EQ(index.value, 1);
+    EXPECT_EQ(index.low, 1);
+    EXPECT_EQ(index.high, 1);
+  }
   const Response constant = response_of([](std::span<const double>) { return 1.0; }, 3);
   EXPECT_FALSE(is_computed(sobol_indices(constant, 1, inputs, 64, 1, 1).first[0].value));
   UncertainVariables correlated = inputs;

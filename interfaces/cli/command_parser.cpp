@@ -22,12 +22,12 @@ CLI::Validator number_that(const std::string& range, const std::function<bool(do
                            bool integer = false) {
   return {[=](const std::string& text) {
             double value = 0;
-            // An option that counts is read as an integer: "1e3" is none.
-            long long whole = 0;
-            if (integer && !CLI::detail::lexical_cast(text, whole))
+            if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && allowed(value)) {
+              // An option that counts is read as an integer: "1e3" is none.
+              long long whole = 0;
+              if (!integer || CLI::detail::lexical_cast(text, whole)) return std::string();
               return text + ": must be " + range + ", in digits alone";
-            if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && allowed(value))
-              return std::string();
+            }
             return text + ": must be " + range + (integer ? "" : decimal_point_hint(text));
           },
           ""};
@@ -179,8 +179,10 @@ Option& Option::number_in(double low, double high) {
               [=](double value) { return value >= low && value <= high; });
 }
 
-Option& Option::positive_number() {
-  return only("a finite number > 0", [](double value) { return value > 0; });
+Option& Option::positive_number(double high) {
+  return only(
+      std::isfinite(high) ? "a number > 0, at most " + number_text(high) : "a finite number > 0",
+      [=](double value) { return value > 0 && value <= high; });
 }
 
 Option& Option::accuracy() { return number_in(1e-12, 0.1); }

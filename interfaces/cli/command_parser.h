@@ -2,6 +2,7 @@
 // seen by command_parser.cpp alone: its headers cost every file that includes them seconds.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
@@ -54,10 +55,10 @@ class Option {
   Option& may_be_empty();  ///< of a text, which otherwise is refused where it is ""
   Option& excludes(const Option& other);
 
-  Option& number_in(double low, double high);  ///< finite, in [low, high]
-  Option& positive_number();                   ///< finite, above 0
-  Option& accuracy();                          ///< what Simbody's integrators accept
-  Option& integer_in(int low, int high);       ///< in [low, high]
+  Option& number_in(double low, double high);       ///< finite, in [low, high]
+  Option& positive_number(double high = HUGE_VAL);  ///< finite, above 0
+  Option& accuracy();                               ///< what Simbody's integrators accept
+  Option& integer_in(int low, int high);            ///< in [low, high]
   Option& one_of(const std::vector<std::string>& words);
   Option& completed_with(const std::vector<std::string>& words);  ///< others may be given too
 

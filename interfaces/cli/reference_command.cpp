@@ -126,7 +126,7 @@ Command add_reference_command(CommandParser program) {
       .excludes(mapping);
   make.option("--tolerance", options->tolerance,
               "largest difference over a reaction's peak that counts as agreement")
-      .only("a number > 0, at most 1", [](double value) { return value > 0 && value <= 1; })
+      .positive_number(1)
       .text("NUMBER [what the digits of the file allow]")
       .excludes(mapping);
   make.option("--out", options->out, "where results are written; new directory")

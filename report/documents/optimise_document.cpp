@@ -43,7 +43,7 @@ std::vector<std::string> bindings(const Optimisation& found, std::size_t design)
   std::vector<std::string> all;
   for (const Constraint& c : found.plan.constraints) {
     // With conditions an objective is measured as a mean, which no condition is held to.
-    const bool of_mean = plan.direction[c.output] != 0 && !found.plan.conditions.empty();
+    const bool of_mean = plan.direction[c.output] != 0 && found.plan.conditions.rows.size() > 1;
     const double value = of_mean ? NAN : measured(found, design, c.output);
     const double own = std::abs(found.own.values[c.output]);
     const double scale = std::max(std::abs(c.limit), std::isfinite(own) ? own : 0);

@@ -49,14 +49,14 @@ Section numbers_section(const Validation& v) {
 }
 
 Section curves_section(const Validation& v) {
-  Section section{
-      "Comparison errors of the curves of " + v.reference,
-      std::string(kMeaning) +
-          "the reference's tolerance, tube and error of resampling as half width, over the root of "
-          "3. At the angle where |E| / u_val is largest; of channels that have a band.",
-      {},
-      {columns({"channel", "unit", "angle, deg"}), {}}};
-  section.table.columns.emplace_back("could be 0, % of the turn");
+  Section section{"Comparison errors of the curves of " + v.reference,
+                  std::string(kMeaning) +
+                      "the reference's tolerance, its tube and what the rounding of its angles "
+                      "allows as half width, over the root of "
+                      "3. At the angle where |E| / u_val is largest; of channels that have a band.",
+                  {},
+                  {columns({"channel", "unit", "angle, deg"}), {}}};
+  section.table.columns.emplace_back("could be 0, % of its angles");
   for (const ValidationCurve& curve : v.curves) {
     std::vector<Cell> line = {curve.channel.name, curve.channel.unit, curve.worst_deg};
     for (Cell& cell : cells(curve.worst)) line.push_back(std::move(cell));

@@ -65,6 +65,9 @@ class CaseTest(ModuleTest):
 
     def test_what_is_refused_has_the_words_of_the_program_and_changes_nothing(self):
         case = self.case()
+        for text in ("a\0b", "\ud800"):
+            self.assertIn("name: must be a text that UTF-8 can encode, without a null character",
+                          self.refused(bentaxis.InputError, lambda t=text: case.__setitem__("name", t)))
         words = self.refused(bentaxis.InputError, lambda: case.__setitem__("pump.tilt_deg", 95))
         program = self.run_program("run", CASES / "bap63_rated.toml", "--model", "analytic", "--set", "pump.tilt_deg=95",
                                    status=2).stderr

@@ -225,6 +225,9 @@ class RunTest(ModuleTest):
                                      lambda c=change: bentaxis.run_states(self.case(), {**motion(), **c}))
                 self.assertIn(words, found)
         self.refused(bentaxis.InputError, lambda: bentaxis.run_states(self.case(), self.folder / "none.csv"))
+        for none in (None, [], ["a.csv", "b.csv"]):
+            self.assertEqual(self.refused(bentaxis.InputError, lambda n=none: bentaxis.run_states(self.case(), n)),
+                             "states: must be a mapping from columns to arrays, or one path")
 
 
 class LockTest(ModuleTest):
