@@ -1559,7 +1559,15 @@ class TwoFlanksTest(ProgramTest):
         case = self.case(**BESIDE_B)
         out = self.run_program("compare", case, "--out", "out").out
         self.assertIn("The two models agree", out)
-        self.assertRegex(out, r"Rcs < 0: over .* each flank pushes the gears apart\. With one line of action .* Rcn changes by up to")
+        # Both flanks are modelled: that the other one carries is no warning, and what one flank would change is said.
+        self.assertNotIn("Rcs < 0", out)
+        [flank] = [limit for limit in json.loads((self.folder / "out" / "report.json").read_text())["validity"] if "flank" in limit["limit"]]
+        self.assertFalse(flank["violated"])
+        self.assertRegex(flank["consequence"], r"^where Rcs is negative, [\d.]+ % of the turn, the other flank is loaded; each flank pushes the "
+                         r"gears apart\. With one line of action .* Rcn changes by up to")
+        share = float(re.search(r"negative, ([\d.]+) %", flank["consequence"])[1])
+        values = [float(value) for value in self.column("out/analytic.csv", "Rcs_z4_N")]
+        self.assertAlmostEqual(share, 100 * sum(value < 0 for value in values) / len(values), delta=0.06)
         self.assertRegex(out, r"Rc works on the play: over .* mean power of Rc on the play -?[0-9.]+ W")
         power = [float(re.search(r"mean power of Rc on the play (-?[0-9.]+) W", out)[1])]
         for model in ("analytic", "multibody"):

@@ -11,6 +11,7 @@
 #include "bentaxis/designs/points.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/study/run.h"
 
 namespace bentaxis::designs {
 namespace {
@@ -90,6 +91,41 @@ TEST_F(Identify, ALinearUnknownHasTheLimitsOfItsNormalDistribution) {
   EXPECT_FALSE(result.profiles[0].open_low || result.profiles[0].open_high);
   const double spread = 200 / std::sqrt(12.0);
   EXPECT_NEAR(result.information.deviation[0], deviation / std::hypot(1, deviation / spread), 1e-4);
+}
+
+// Nothing is interpolated: a record of the model itself has no residual, beside a statistic of the
+// whole turn, by the kernel and without it.
+TEST(IdentificationRecords, AreComparedAtTheirOwnAngles) {
+  const Case base = base_case();  // of 60 samples
+  const std::vector<double> theta = {-0.7, 0.3, 47.9, 182.1, 182.05, 359.9, 407.9};
+  const ResultTable there = study::run_at_angles(study::prepare(base), theta, {});
+  const std::size_t column = there.find("Rs_1_z2_N");
+  ASSERT_LT(column, there.columns());
+  Datum record;
+  record.what = "Rs_1_z2_N";
+  record.uncertainty = 1;
+  record.curve.emplace(Datum::Curve{column, theta, {}, std::vector<double>(theta.size(), 1.0)});
+  for (std::size_t row = 0; row < theta.size(); ++row)
+    record.curve->values.push_back(there.at(row, column));
+  const double torque = value_of(base, "mean:Td");
+  for (const bool kernel : {true, false}) {
+    const DataModel model(base,
+                          data_of(base, {"pressure.delivery_bar=200:400"},
+                                  {record, number(base, "mean:Td", torque, 1)}),
+                          kernel);
+    std::vector<double> numbers(model.numbers());
+    ASSERT_TRUE(model.predict(model.start(), numbers));
+    for (std::size_t row = 0; row < theta.size(); ++row)
+      EXPECT_NEAR(numbers[row], record.curve->values[row], 1e-9 * there.peak("Rs")) << theta[row];
+    EXPECT_NEAR(numbers.back(), torque, 1e-9 * torque);
+    // And with another design after it.
+    ASSERT_TRUE(model.predict(std::vector<double>{300}, numbers));
+    Case other = base;
+    other.pressure.ports.delivery = 300e5;
+    const ResultTable then = study::run_at_angles(study::prepare(other), theta, {});
+    for (std::size_t row = 0; row < theta.size(); ++row)
+      EXPECT_NEAR(numbers[row], then.at(row, column), 1e-9 * there.peak("Rs")) << theta[row];
+  }
 }
 
 TEST_F(Identify, WordsNameWhatIsDeterminedOnlyTogether) {

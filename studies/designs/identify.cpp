@@ -9,6 +9,7 @@
 #include "bentaxis/designs/points.h"
 #include "bentaxis/numerics/object_pool.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/study/failed_point.h"
@@ -21,18 +22,14 @@ namespace {
 
 constexpr auto kModel = study::Model::analytic;
 
-// Value of a column between samples of a turn, on the straight line.
+// The angle of a record within its turn.
+double in_turn(double theta_deg) { return theta_deg - 360 * std::floor(theta_deg / 360); }
+
+// Value of a column at an angle that the table has.
 double at_angle(const ResultTable& table, std::size_t column, double theta_deg) {
-  const double angle = theta_deg - 360 * std::floor(theta_deg / 360);
   const auto& theta = table.theta_deg;
-  const auto next =
-      static_cast<std::size_t>(std::upper_bound(theta.begin(), theta.end(), angle) - theta.begin());
-  const std::size_t before = next == 0 ? theta.size() - 1 : next - 1;
-  const std::size_t after = next == theta.size() ? 0 : next;
-  const double from = theta[before] - (next == 0 ? 360 : 0);
-  const double to = theta[after] + (next == theta.size() ? 360 : 0);
-  const double low = table.at(before, column), high = table.at(after, column);
-  return low + (high - low) * (angle - from) / (to - from);
+  const auto row = std::lower_bound(theta.begin(), theta.end(), in_turn(theta_deg));
+  return table.at(static_cast<std::size_t>(row - theta.begin()), column);
 }
 
 double outside(double value, double low, double high) {
@@ -54,7 +51,8 @@ struct DataModel::Implementation {
     compare::PublishedVariant variant;
     std::vector<std::size_t> data;  // that are read off it
     std::vector<Output> outputs;    // of them, in their order
-    bool table = false;             // whether one of them needs the curves
+    std::vector<double> angles;     // of the records among them, deg in a turn, rising
+    bool table = false;             // whether one of them needs the curves over a whole turn
     bool kernel = false;            // whether `wanted` has all columns they need
   };
   // The cases of a condition, and which unknowns act in it.
@@ -72,22 +70,35 @@ struct DataModel::Implementation {
   std::size_t numbers = 0;
   std::vector<std::size_t> wanted;  // columns that the kernel computes, rising
 
+  // Designs by the kernel, at one set of angles.
+  struct Turn {
+    KernelTurn turn;
+    std::optional<analytic::BatchColumns> columns;
+    ResultTable table;  // of the wanted columns
+  };
   // What one thread works in.
   struct Scratch {
     std::vector<Case> of_branch;
     Case the_case;
-    KernelTurn turn;
-    std::optional<analytic::BatchColumns> columns;
-    ResultTable table;  // of the wanted columns
+    Turn whole;                  // at the samples of the case
+    std::vector<Turn> of_state;  // at the angles of its records
   };
   mutable numerics::ObjectPool<Scratch> scratches;
 
   Scratch fresh() const {
     Scratch scratch;
     scratch.of_branch.assign(branches.size(), base);
+    for (const State& state : states) {
+      scratch.of_state.push_back({KernelTurn(state.angles), {}, {}});
+      scratch.of_state.back().table.theta_deg = state.angles;
+    }
     const ChannelLayout layout(base.pump);
-    for (const std::size_t column : wanted)
-      scratch.table.channels.push_back(layout.channels()[column]);
+    const auto name = [&](Turn& turn) {
+      for (const std::size_t column : wanted)
+        turn.table.channels.push_back(layout.channels()[column]);
+    };
+    name(scratch.whole);
+    for (Turn& turn : scratch.of_state) name(turn);
     return scratch;
   }
   std::size_t place_in_table(std::size_t column) const {
@@ -127,20 +138,22 @@ struct DataModel::Implementation {
     wanted.assign(all.begin(), all.end());
   }
 
-  // Fills the table of a scratch by the kernel. @return false where the general way has to say what
+  // Fills the table of a turn by the kernel. @return false where the general way has to say what
   // is wrong
-  bool tabulate(Scratch& scratch, const Assumptions& assumptions) const {
+  bool tabulate(const Case& the_case, const Assumptions& assumptions, Turn& turn) const {
     if (assumptions.gear != BlockDrive::mesh) return false;
-    scratch.turn.become(scratch.the_case, assumptions);
-    const ChannelLayout& layout = scratch.turn.model().layout();
-    const analytic::BatchInstants instants = scratch.turn.instants();
+    turn.turn.become(the_case, assumptions);
+    const ChannelLayout& layout = turn.turn.model().layout();
+    const analytic::BatchInstants instants = turn.turn.instants();
     const std::size_t rows = instants.count;
-    ResultTable& table = scratch.table;
+    ResultTable& table = turn.table;
     if (table.rows() != rows) {
-      scratch.columns.emplace(layout.reactions(), rows);
       table.theta_deg.resize(rows);
       for (std::size_t i = 0; i < rows; ++i)
         table.theta_deg[i] = 360.0 * static_cast<double>(i) / static_cast<double>(rows);
+    }
+    if (table.values.size() != rows * wanted.size() || !turn.columns) {
+      turn.columns.emplace(layout.reactions(), rows);
       table.values.resize(rows * wanted.size());
     }
     // The torque on the block is the tooth force's on its arm.
@@ -152,13 +165,13 @@ struct DataModel::Implementation {
     };
     analytic::BatchOutputs outputs(layout.reactions());
     for (const std::size_t column : wanted)
-      outputs[source(column)] = scratch.columns->column(source(column));
-    scratch.turn.model().reactions(instants, outputs);
-    const Gear& gear = scratch.the_case.pump.gear;
+      outputs[source(column)] = turn.columns->column(source(column));
+    turn.turn.model().reactions(instants, outputs);
+    const Gear& gear = the_case.pump.gear;
     for (std::size_t c = 0; c < wanted.size(); ++c) {
       double factor = 1 / table.channels[c].unit_in_si;
       if (is_carrying(wanted[c])) factor *= gear.pitch_diameter / 2 * std::cos(gear.pressure_angle);
-      const double* values = scratch.columns->column(source(wanted[c]));
+      const double* values = turn.columns->column(source(wanted[c]));
       for (std::size_t row = 0; row < rows; ++row) {
         if (!std::isfinite(values[row])) return false;
         table.values[row * wanted.size() + c] = factor * values[row];
@@ -169,11 +182,12 @@ struct DataModel::Implementation {
 
   double value_of(const Output& output, const Scratch& scratch) const {
     if (output.source == Source::derived) return derived_value(output, scratch.the_case.pump);
-    std::vector<double> curve(scratch.table.rows());
+    const ResultTable& table = scratch.whole.table;
+    std::vector<double> curve(table.rows());
     for (std::size_t row = 0; row < curve.size(); ++row) {
       double square = 0, value = 0;
       for (const std::size_t column : output.columns) {
-        value = scratch.table.at(row, place_in_table(column));
+        value = table.at(row, place_in_table(column));
         square += value * value;
       }
       curve[row] = output.columns.size() > 1 ? std::sqrt(square) : value;
@@ -185,18 +199,23 @@ struct DataModel::Implementation {
   bool read_off_kernel(const State& state, Scratch& scratch, std::span<double> results) const {
     Assumptions assumptions = scratch.the_case.analytic;
     study::apply_variant(state.variant, scratch.the_case, assumptions);
-    if (!tabulate(scratch, assumptions)) return false;
+    Turn& at_records = scratch.of_state[static_cast<std::size_t>(&state - states.data())];
+    const Case& the_case = scratch.the_case;
+    if (!state.angles.empty() && !tabulate(the_case, assumptions, at_records)) return false;
+    const bool turns = state.table || !state.outputs.empty();
+    if (turns && !tabulate(the_case, assumptions, scratch.whole)) return false;
     read_table(
-        state, {&scratch.table, study::facts_of(scratch.the_case, assumptions)},
+        state, {&scratch.whole.table, study::facts_of(the_case, assumptions)}, at_records.table,
         [&](std::size_t column) { return place_in_table(column); }, results);
     for (const std::size_t i : state.data)
       if (data.data[i].output) results[places[i]] = value_of(*data.data[i].output, scratch);
     return true;
   }
 
-  // What is read off curves: printed numbers and records.
+  // What is read off curves: printed numbers of a turn, and records at their own angles.
   template <class PlaceOf>
-  void read_table(const State& state, const compare::PublishedRun& run, const PlaceOf& place_of,
+  void read_table(const State& state, const compare::PublishedRun& run,
+                  const ResultTable& at_records, const PlaceOf& place_of,
                   std::span<double> results) const {
     for (const std::size_t i : state.data) {
       const Datum& datum = data.data[i];
@@ -209,7 +228,7 @@ struct DataModel::Implementation {
       } else if (datum.curve) {
         for (std::size_t k = 0; k < datum.size(); ++k)
           results[place + k] =
-              at_angle(*run.table, place_of(datum.curve->column), datum.curve->theta_deg[k]);
+              at_angle(at_records, place_of(datum.curve->column), datum.curve->theta_deg[k]);
       }
     }
   }
@@ -254,17 +273,20 @@ struct DataModel::Implementation {
       for (const std::size_t i : state.data)
         if (data.data[i].output) results[places[i]] = values[next++];
     }
-    if (!state.table) return;
+    if (!state.table && state.angles.empty()) return;
     if (!prepared) prepared.emplace(study::prepare(the_case));
     study::PreparedCase& ready = *prepared;
     compare::PublishedRun run;
     Assumptions assumptions = the_case.analytic;
     study::apply_variant(state.variant, ready.the_case, assumptions);
     run.facts = study::facts_of(ready.the_case, assumptions);
-    const ResultTable table = study::run(ready, {.assumptions = assumptions}).table;
+    const study::RunOptions options = {.assumptions = assumptions};
+    const ResultTable table = state.table ? study::run(ready, options).table : ResultTable{};
     run.table = &table;
+    const ResultTable at_records =
+        state.angles.empty() ? ResultTable{} : study::run_at_angles(ready, state.angles, options);
     read_table(
-        state, run, [](std::size_t column) { return column; }, results);
+        state, run, at_records, [](std::size_t column) { return column; }, results);
   }
 };
 
@@ -299,12 +321,16 @@ DataModel::DataModel(Case base, IdentificationData data, bool kernel) {
     state.data.push_back(i);
     if (datum.output)
       state.outputs.push_back(*datum.output);
+    else if (datum.curve)
+      for (const double theta_deg : datum.curve->theta_deg)
+        state.angles.push_back(in_turn(theta_deg));
     else
       state.table = true;
   }
   if (std::none_of(all.data.begin(), all.data.end(),
                    [](const Datum& d) { return d.use == Use::fitted; }))
     throw InputError("identify: the data contain nothing to which unknowns can be fitted");
+  for (Implementation::State& state : made->states) sort_once(state.angles);
   if (kernel) made->use_kernel();
   implementation_ = std::move(made);
 }

@@ -77,18 +77,28 @@ std::optional<TurnOutputs> turn_outputs(const std::vector<Output>& outputs, cons
   return result;
 }
 
+double KernelTurn::degrees(std::size_t sample) const {
+  return given_deg_.empty()
+             ? 360.0 * static_cast<double>(sample) / static_cast<double>(theta_.size())
+             : given_deg_[sample];
+}
+
+bool KernelTurn::shifted(int pistons) const {
+  return given_deg_.empty() && theta_.size() % static_cast<std::size_t>(pistons) == 0;
+}
+
 void KernelTurn::set_samples(std::size_t samples, int pistons) {
+  if (!given_deg_.empty()) samples = given_deg_.size();
   if (theta_.size() == samples) return;
   made_for_.reset();
   theta_.resize(samples);
-  for (std::size_t i = 0; i < samples; ++i)
-    theta_[i] = radians(360.0 * static_cast<double>(i) / static_cast<double>(samples));
+  for (std::size_t i = 0; i < samples; ++i) theta_[i] = radians(degrees(i));
   const auto n = static_cast<std::size_t>(pistons);
-  const bool shifted = samples % n == 0;
-  pressures_.resize(samples * (shifted ? 2 : n));
+  const bool together = shifted(pistons);
+  pressures_.resize(samples * (together ? 2 : n));
   chambers_.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t start = shifted ? (samples - k * (samples / n)) % samples : k * samples;
+    const std::size_t start = together ? (samples - k * (samples / n)) % samples : k * samples;
     chambers_[k] = {&pressures_[start], 0};
   }
 }
@@ -101,13 +111,12 @@ void KernelTurn::set_pressure(const PressureSpec& pressure, int pistons) {
   if (!made_for_ || (ideal && !same_shape)) {
     const PressureTrace trace(shares_of(pressure));
     shares_.resize(pressures_.size());
-    const bool shifted = samples % static_cast<std::size_t>(pistons) == 0;
+    const bool together = shifted(pistons);
     for (std::size_t i = 0; i < shares_.size(); ++i) {
-      const double degrees =
-          360.0 * static_cast<double>(i % samples) / static_cast<double>(samples);
-      const int piston = shifted ? 1 : 1 + static_cast<int>(i / samples);
-      shares_[i] = shifted && i >= samples ? shares_[i - samples]
-                                           : trace(piston_angle_deg(degrees, piston, pistons));
+      const int piston = together ? 1 : 1 + static_cast<int>(i / samples);
+      shares_[i] = together && i >= samples
+                       ? shares_[i - samples]
+                       : trace(piston_angle_deg(degrees(i % samples), piston, pistons));
     }
   } else if (!ideal || (made_for_->ports.suction == pressure.ports.suction &&
                         made_for_->ports.delivery == pressure.ports.delivery)) {

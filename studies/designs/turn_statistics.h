@@ -37,6 +37,11 @@ std::optional<TurnOutputs> turn_outputs(const std::vector<Output>& outputs, cons
 /// kept from one to the next while what they depend on stays.
 class KernelTurn {
  public:
+  /// At the samples of each design.
+  KernelTurn() = default;
+  /// At these angles of a turn, deg, for every design.
+  explicit KernelTurn(std::vector<double> theta_deg) : given_deg_(std::move(theta_deg)) {}
+
   /// Becomes a turn of this design.
   /// @param the_case  valid; every time as many pistons, no teeth, pressure ideal or the same curve
   /// @throws InputError
@@ -48,11 +53,15 @@ class KernelTurn {
 
  private:
   void set_samples(std::size_t samples, int pistons);
+  double degrees(std::size_t sample) const;
+  // Whether each chamber passes the samples where the one before it has been.
+  bool shifted(int pistons) const;
   void set_pressure(const PressureSpec& pressure, int pistons);
 
   std::optional<analytic::BatchModel> model_;
   double speed_rpm_ = 0;
   PortPressures ports_;
+  std::vector<double> given_deg_;
   std::vector<double> theta_;  // rad
   // Chamber by chamber where chambers pass the samples at places of their own; else of the first
   // chamber twice, each other one beginning somewhere in its first turn. Shares are of the way from
