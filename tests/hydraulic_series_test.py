@@ -90,7 +90,7 @@ class SeriesTest(ProgramTest):
         self.assertIn("2 of 12 points could not be computed", result.err)
         self.assertIn("delivery_bar = 100, speed_rpm = 500, swept up", result.err)
         self.assertEqual(len(self.failed("report.json")), 2)
-        self.assertIn("1 of its speeds could not be computed", result.out)
+        self.assertIn("1 of its 3 speeds could not be computed", result.out)
 
     def test_inertia_keeps_the_other_speeds(self):
         text = self.case().read_text().replace(
