@@ -884,7 +884,7 @@ std::vector<std::string> assumptions_of(const CurveDescription& curve) {
   if (curve.vectors.size() > 1 &&
       std::all_of(curve.vectors.begin(), curve.vectors.end(),
                   [](const VectorMap& vector) { return vector.factor < 0; }))
-    lines.push_back(
+    lines.emplace_back(
         "assumed: every vector has the sign -1, the force on the other body; vectors in "
         "left-handed "
         "axes look the same");

@@ -247,13 +247,12 @@ struct DataModel::Implementation {
       acting.push_back(i);
     }
     std::vector<double> settings;
-    for (const auto& [variable, value] : condition.settings) {
+    for (const auto& setting : condition.settings) {
       // An unknown of this condition is the setting that is not known exactly.
-      if (std::any_of(variables.begin(), variables.end(),
-                      [&](const Variable& v) { return v.name() == variable.name(); }))
-        continue;
-      variables.push_back(variable);
-      settings.push_back(value);
+      const auto is_set = [&](const Variable& v) { return v.name() == setting.first.name(); };
+      if (std::any_of(variables.begin(), variables.end(), is_set)) continue;
+      variables.push_back(setting.first);
+      settings.push_back(setting.second);
     }
     return {Family(base, std::move(variables)), std::move(acting), std::move(settings)};
   }
