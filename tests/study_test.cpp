@@ -31,6 +31,7 @@
 #include "bentaxis/study/operating_points.h"
 #include "bentaxis/study/paper_figures.h"
 #include "bentaxis/study/plausibility.h"
+#include "bentaxis/study/reference_curves.h"
 #include "bentaxis/study/reference_set.h"
 #include "bentaxis/study/regression.h"
 #include "bentaxis/study/rounding_spread.h"
@@ -162,6 +163,64 @@ Magnitude magnitude(const ResultTable& table, const std::string& symbol) {
 
 // Appendix, Fig. 36 and 37: axes 10..70 N for Rc and 20..110 N for Rs; two masses above the real
 // piston for Rc and below it for Rs.
+// A page has the case's angles, a reference its own: drawn on straight lines between its points,
+// and not within its gaps.
+TEST(ReferenceCurves, AreDrawnAtTheAnglesOfAPage) {
+  Channel x;
+  x.name = x.group = "X_N";
+  x.kind = ChannelKind::reaction;
+  const auto table = [&](const char* name, std::vector<double> theta, std::vector<double> values) {
+    ResultTable made;
+    made.name = name;
+    made.channels = {x};
+    made.theta_deg = std::move(theta);
+    made.values = std::move(values);
+    return made;
+  };
+  const std::vector<double> own = {10, 100, 190, 280};
+  study::Outcome outcome;
+  outcome.held["analytic"] = {table("analytic", own, {1, 3, 5, 3}),
+                              table("reference", own, {1, 2, 3, 4}),
+                              {},
+                              {},
+                              {},
+                              {{190, 280}}};
+  study::GroupLine line;
+  line.model = "analytic";
+  compare::ReferenceChannel channel;
+  channel.comparison.channel = x;
+  channel.comparison.allowed = 0.5;
+  channel.finding = compare::Finding::differs;
+  line.channels = {channel};
+  outcome.lines = {line};
+  const auto at = [&](const std::vector<double>& theta) {
+    return study::reference_curves(outcome, {"X_N"}, theta)->held.at(0);
+  };
+  EXPECT_EQ(at(own).values, (std::vector<double>{1, 2, 3, 4}));
+  const auto drawn = at({0, 55, 100, 145, 190, 235, 280});
+  const std::vector<double> values = {4 - 3.0 * 80 / 90, 1.5, 2, 2.5, 3, not_computed(), 4};
+  const std::vector<double> apart = {-1 + 80.0 / 90, 0.5, 1, 1.5, 2, not_computed(), -1};
+  ASSERT_EQ(drawn.values.size(), values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_EQ(is_computed(drawn.values[i]), is_computed(values[i])) << i;
+    if (!is_computed(values[i])) continue;
+    EXPECT_NEAR(drawn.values[i], values[i], 1e-12) << i;
+    EXPECT_NEAR(drawn.differences.at(0).second[i], apart[i], 1e-12) << i;
+  }
+  EXPECT_EQ(drawn.allowed, 0.5);
+}
+
+TEST(InertiaStudy, ResolvedTeethHaveTheRoundOffOfTheirStiffness) {
+  Case the_case = read_case(BENTAXIS_SOURCE_DIR "/cases/bap63_teeth.toml");
+  const double as_is = study::tooth_round_off(the_case.pump);
+  // More than what the models differ by without load (docs/inertia.md), and no more than ten times.
+  EXPECT_GT(as_is, 3.5e-9);
+  EXPECT_LT(as_is, 3.5e-8);
+  the_case.pump.gear.teeth->youngs_modulus *= 10;
+  EXPECT_DOUBLE_EQ(study::tooth_round_off(the_case.pump), 10 * as_is);
+  EXPECT_EQ(study::tooth_round_off(shipped_case().pump), 0);
+}
+
 TEST(InertiaStudy, CurvesLieInThePapersWindowsInThePapersOrder) {
   for (const double speed : {1500.0, 2350.0}) {
     const InertiaRun run = study::run_both_pistons(shipped_case(), speed, false, Scene::piston);

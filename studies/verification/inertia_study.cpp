@@ -42,18 +42,9 @@ void require_even_transfer(const Case& the_case) {
                    " in an inertia study: the block has to turn exactly as the shaft does");
 }
 
-// A force between resolved teeth is their stiffness times a gap, which has the round-off of the
-// radii that it is a difference of. E times the width is more than any pair's stiffness.
-double tooth_round_off(const Case& the_case) {
-  const Gear& gear = the_case.pump.gear;
-  if (gear.contact != ToothContact::teeth || !gear.teeth) return 0;
-  return gear.teeth->youngs_modulus * gear.teeth->face_width * gear.pitch_diameter / 2 *
-         std::numeric_limits<double>::epsilon();
-}
-
 void compare_models_and_scenes(InertiaStudy& s) {
   const double radius = s.the_case.pump.geometry.joint_circle_radius;
-  const double of_teeth = tooth_round_off(s.the_case) / kInertiaModelsAgree;
+  const double of_teeth = tooth_round_off(s.the_case.pump) / kInertiaModelsAgree;
   compare::Difference models, scenes;
   for (std::size_t i = 0; i < s.full.size(); ++i) {
     // Runs come in pairs: without load, loaded. The inertia forces alone are the smallest scale.
@@ -91,6 +82,13 @@ const InertiaRun& InertiaStudy::loaded(const std::vector<InertiaRun>& runs, doub
   return *std::find_if(runs.begin(), runs.end(), [&](const InertiaRun& run) {
     return run.loaded && run.speed_rpm == speed_rpm;
   });
+}
+
+double tooth_round_off(const PumpParameters& pump) {
+  const Gear& gear = pump.gear;
+  if (gear.contact != ToothContact::teeth || !gear.teeth) return 0;
+  return gear.teeth->youngs_modulus * gear.teeth->face_width * gear.pitch_diameter / 2 *
+         std::numeric_limits<double>::epsilon() / 2;
 }
 
 bool InertiaStudy::agrees() const {

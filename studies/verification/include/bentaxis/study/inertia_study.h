@@ -44,6 +44,10 @@ struct InertiaStudy {
 
 /// Both models solve the same equations; what they may differ by, of peak.
 inline constexpr double kInertiaModelsAgree = 1e-10;
+/// N. A force between resolved teeth is their stiffness times a gap, which has the round-off of the
+/// radii that it is a difference of. E times the width is more than any pair's stiffness. 0 of
+/// other contacts.
+double tooth_round_off(const PumpParameters& pump);
 /// The one-piston scene against the full pump, of peak.
 inline constexpr double kInertiaScenesAgree = 1e-11;
 
