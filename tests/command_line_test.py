@@ -1552,6 +1552,21 @@ WITHOUT_EFFECT = (
 )
 
 
+class FigureFilesTest(ProgramTest):
+    def test_pictures_of_an_earlier_result_go_and_other_files_stay(self):
+        command = ("compare", self.case(**{"operation.samples_per_revolution": 36}), "--out", "out", "--figures", "pictures")
+        self.run_program(*command)
+        pictures = self.folder / "pictures"
+        before = {path.name for path in pictures.iterdir()}
+        self.assertGreater(len([name for name in before if name.endswith(".svg")]), 5)
+        (pictures / "mine.txt").write_text("mine")
+        self.run_program(*command, "--channels", "Td")
+        after = {path.name for path in pictures.iterdir()}
+        named = [line.split(",")[0] for line in (pictures / "figures.csv").read_text().splitlines()[1:]]
+        self.assertEqual(after, {"figures.csv", "mine.txt"} | {f"{name}.{kind}" for name in named for kind in ("svg", "png", "csv")})
+        self.assertLess(len(after), len(before) / 2)
+
+
 class TwoFlanksTest(ProgramTest):
     """Two flanks and bore forces beside B at constant speed."""
 
