@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <utility>
 
 #include "bentaxis/analytic/constant_speed.h"
 #include "bentaxis/analytic/teeth.h"
@@ -51,6 +50,13 @@ std::string flank_text(const Model::FlankChange& change) {
          ", Rb2 by " + newtons(change.cylindrical) + ", Fh by " + newtons(change.film);
 }
 
+// Where the model covers what the limit asks: nothing is beyond it, whatever the values are.
+void hold_everywhere(ValidityLimit& limit) {
+  limit.violated_share = 0;
+  for (ValidityLimit::Row& row : limit.rows)
+    if (row == ValidityLimit::Row::violated) row = ValidityLimit::Row::holds;
+}
+
 // Where the other flank carries, and what that means.
 void describe_flanks(ValidityLimit& flank, const Model& model, bool two, double omega,
                      double furthest) {
@@ -58,14 +64,12 @@ void describe_flanks(ValidityLimit& flank, const Model& model, bool two, double 
   const Model::FlankChange change = model.flank_change(furthest, omega);
   const bool differs = change.tapered > 0;
   if (two) {
-    // Modelled too: nothing is beyond what the model says.
-    const double share = std::exchange(flank.violated_share, 0);
-    for (ValidityLimit::Row& row : flank.rows)
-      if (row == ValidityLimit::Row::violated) row = ValidityLimit::Row::holds;
     flank.consequence =
-        "where Rcs is negative, " +
-        (share > 0 ? rounded_text(100 * share, 3) + " % of the turn" : "nowhere here") +
-        ", the other flank is loaded; each flank pushes the gears apart" +
+        (flank.violated_share > 0
+             ? "Rcs is negative over " + rounded_text(100 * flank.violated_share, 3) +
+                   " % of the turn: there the other flank is loaded"
+             : std::string("Rcs is nowhere negative: one flank is loaded throughout")) +
+        "; each flank pushes the gears apart" +
         (differs
              ? ". With one line of action for both, as printed in the paper, " + flank_text(change)
              : std::string());
@@ -168,7 +172,7 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
 
   const bool two = the_case.pump.gear.flanks == Flanks::two;
   ValidityLimit flank;
-  flank.limit = two ? "tooth force on a modelled flank: both are"
+  flank.limit = two ? "tooth force on a modelled flank: both flanks are modelled"
                     : "tooth force on the modelled flank: Rcs >= 0";
   flank.name = "Rcs < 0";
   flank.key = "flank";
@@ -186,6 +190,7 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
     else
       pulled = flank;
     describe_flanks(flank, model, two, samples.omega, pulled.worst);
+    if (two) hold_everywhere(flank);
   }
   limits.push_back(flank);
 

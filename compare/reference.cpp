@@ -1222,6 +1222,14 @@ Judgement judge(const ReferenceDescription& description, const std::vector<Refer
                 const ResultAt& result_at, const std::vector<double>& case_theta_deg,
                 const ZeroScales& zero_scales) {
   require_one_curve_each(curves);
+  // Round-off in a file is no other angle.
+  const auto as_in_case = [&](std::vector<double> theta_deg) {
+    for (double& angle : theta_deg)
+      if (const std::size_t there = find_angle(case_theta_deg, angle, kSameAngle);
+          there < case_theta_deg.size())
+        angle = case_theta_deg[there];
+    return theta_deg;
+  };
   std::vector<Held> held;
   std::list<ResultTable> results;            // of each
   std::vector<const ReferenceCurve*> first;  // of each
@@ -1238,7 +1246,7 @@ Judgement judge(const ReferenceDescription& description, const std::vector<Refer
     }
     first.push_back(&curve);
     add_gaps(curve, gaps);
-    const ResultTable& result = results.emplace_back(result_at(curve.table.theta_deg));
+    const ResultTable& result = results.emplace_back(result_at(as_in_case(curve.table.theta_deg)));
     held.push_back({at_own_angles(description, curve, result, result_at), &result});
   }
   std::vector<double> all;

@@ -655,7 +655,7 @@ TEST(Validity, ShareIsOfTheAnglesThatAreComputed) {
   EXPECT_EQ(flank().violated_share, 0);
   EXPECT_EQ(analytic::share_beyond({flank()}), 0);
   EXPECT_EQ(flank().worst, -3);
-  EXPECT_NE(flank().consequence.find("negative, 20 % of the turn"), std::string::npos)
+  EXPECT_NE(flank().consequence.find("negative over 20 % of the turn"), std::string::npos)
       << flank().consequence;
   the_case.pump.gear.flanks = Flanks::one;
   for (std::size_t row = 0; row < 12; ++row) set(row, not_computed());

@@ -1578,9 +1578,9 @@ class TwoFlanksTest(ProgramTest):
         self.assertNotIn("Rcs < 0", out)
         [flank] = [limit for limit in json.loads((self.folder / "out" / "report.json").read_text())["validity"] if "flank" in limit["limit"]]
         self.assertFalse(flank["violated"])
-        self.assertRegex(flank["consequence"], r"^where Rcs is negative, [\d.]+ % of the turn, the other flank is loaded; each flank pushes the "
+        self.assertRegex(flank["consequence"], r"^Rcs is negative over [\d.]+ % of the turn: there the other flank is loaded; each flank pushes the "
                          r"gears apart\. With one line of action .* Rcn changes by up to")
-        share = float(re.search(r"negative, ([\d.]+) %", flank["consequence"])[1])
+        share = float(re.search(r"negative over ([\d.]+) %", flank["consequence"])[1])
         values = [float(value) for value in self.column("out/analytic.csv", "Rcs_z4_N")]
         self.assertAlmostEqual(share, 100 * sum(value < 0 for value in values) / len(values), delta=0.06)
         self.assertRegex(out, r"Rc works on the play: over .* mean power of Rc on the play -?[0-9.]+ W")

@@ -118,7 +118,22 @@ class InertiaTest(WithFolder):
     def test_resolved_teeth_are_held_to_what_their_stiffness_leaves(self):
         """Without load their forces are their stiffness times the round-off of a gap."""
         self.run_program("inertia", "bap63_teeth", "--speeds", "1500", "--map-size", "2", "--out", "out")
-        self.assertTrue(json.loads((self.folder / "out" / "inertia.json").read_text())["verdict"]["agrees"])
+        verdict = json.loads((self.folder / "out" / "inertia.json").read_text())["verdict"]
+        self.assertEqual((verdict["agrees"], verdict["word"]), (True, "Two masses are enough"))
+
+    def test_without_load_the_difference_of_resolved_teeth_goes_with_their_stiffness(self):
+        """What docs/inertia.md says of it: so it is round-off of the gap, and no other cause."""
+        unloaded = [word for change in (
+            "pressure.delivery_bar=0", "operation.gravity_m_per_s2=0", "block.spring_force_N=0", "friction.piston_coulomb_N=0",
+            "friction.shaft_viscous_Nm_per_rpm=0", "friction.shaft_torque_factor=1") for word in ("--set", change)]
+        apart = []
+        for modulus in (20, 2000):
+            subprocess.run([PROGRAM, "compare", "bap63_teeth", *unloaded, "--set", f"gear.youngs_modulus_GPa={modulus}", "--out", "out"],
+                           cwd=self.folder, capture_output=True, timeout=SECONDS)
+            channels = json.loads((self.folder / "out/report.json").read_text())["channels"]
+            apart.append(max(c["max_abs"] for c in channels if c["group"] == "Rb1"))
+        self.assertGreater(apart[1] / apart[0], 20)
+        self.assertLess(apart[1] / apart[0], 500)
 
     def test_a_block_that_does_not_turn_as_the_shaft_is_refused(self):
         for case, kind in (("bap63_cardan", "cardan"), ("bap63_tapered_pistons", "pistons")):

@@ -10,6 +10,7 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/hydraulics/steady_state.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/study/turn_summary.h"
 #include "network.h"
 #include "support.h"
 #include "timing_record.h"
@@ -334,6 +335,30 @@ TEST(Filling, IsNotJudgedWhereThereIsNoSuctionStroke) {
   const SteadyState state = hydraulics::steady_state(the_case);
   EXPECT_FALSE(state.timing.filled.has_value());
   for (const auto& row : timing_rows(the_case, state)) EXPECT_NE(row.code, "filling");
+}
+
+TEST(TimingAnswer, CountsWhatExceedsALimitAndWhatIsMeant) {
+  const auto row = [](const char* quantity, bool flagged, const char* meant) {
+    TimingRow made;
+    made.quantity = quantity;
+    made.limit = 1;
+    made.flagged = flagged;
+    made.meant = meant;
+    return made;
+  };
+  const TimingRow fine = row("fine", false, ""), high = row("high", true, ""),
+                  wide = row("wide", true, ""), meant = row("meant", true, "so it is");
+  TimingRow unlimited = row("unlimited", false, "");
+  unlimited.limit.reset();
+  EXPECT_EQ(timing_answer({fine, unlimited}), "Port timing: within all limits.");
+  EXPECT_EQ(timing_answer({fine, meant, unlimited}),
+            "Port timing: 1 of 2 quantities with a limit exceed it, as intended.");
+  EXPECT_EQ(timing_answer({fine, high, wide}),
+            "Port timing: 2 of 3 quantities with a limit exceed it: high, wide (pressure --advise: "
+            "what to change).");
+  EXPECT_EQ(timing_answer({high, meant, fine}),
+            "Port timing: 1 of 3 quantities with a limit exceed it: high; 1 more as intended "
+            "(pressure --advise: what to change).");
 }
 
 TEST(FillingSpeed, LosesOnePercentAndPressureLimitsNameTheirLoss) {

@@ -142,7 +142,7 @@ class MessagesTest(WordsTest):
             (["compare", self.case, "--tolerance", "40,0"],
              "--tolerance: 40,0: must be a finite number > 0; decimals follow a point: 40.0"),
             (["hardcases", "--turns", "1.5"], "--turns: 1.5: must be an integer in [0, 100000]"),
-            (["hardcases", "--turns", "1e3"], "--turns: 1e3: must be an integer in [0, 100000], in digits alone"),
+            (["hardcases", "--turns", "1e3"], "--turns: 1e3: must be an integer in [0, 100000], written without an exponent"),
             (["reference", "new", self.case, "--from", self.case, "--tolerance", "2"], "--tolerance: 2: must be a number > 0, at most 1"),
             ([*run, "pump.tilt_deg=40,0"],
              "--set pump.tilt_deg=40,0: must be a number, in [0, 90); decimals follow a point: 40.0"),

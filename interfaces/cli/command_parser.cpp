@@ -26,7 +26,7 @@ CLI::Validator number_that(const std::string& range, const std::function<bool(do
               // An option that counts is read as an integer: "1e3" is none.
               long long whole = 0;
               if (!integer || CLI::detail::lexical_cast(text, whole)) return std::string();
-              return text + ": must be " + range + ", in digits alone";
+              return text + ": must be " + range + ", written without an exponent";
             }
             return text + ": must be " + range + (integer ? "" : decimal_point_hint(text));
           },

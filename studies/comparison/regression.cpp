@@ -9,6 +9,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/lists.h"
 #include "bentaxis/results/stopwatch.h"
+#include "bentaxis/study/achieved_error.h"
 
 namespace bentaxis::study {
 
@@ -41,7 +42,7 @@ std::size_t stride_of(const compare::ReferenceDescription& description, const Ca
   return all % theirs == 0 ? static_cast<std::size_t>(all / theirs) : 1;
 }
 
-// What is to be known of the angles that were compared.
+// What is to be known of the angles that were compared, said once where it is so of both models.
 void note_angles(const std::string& model, const compare::Judgement& judgement,
                  std::vector<std::string>& notes) {
   if (judgement.resampled)
@@ -50,17 +51,25 @@ void note_angles(const std::string& model, const compare::Judgement& judgement,
         "error of up to {:.1e} of peak; this is added to the tolerance around each angle",
         model, judgement.resampling_error));
   if (judgement.at_own_angles)
-    notes.push_back(fmt::format("{}: computed and compared at the reference's own {} angles", model,
+    add_once(notes, fmt::format("computed and compared at the reference's own {} angles",
                                 judgement.reference.rows()));
   for (const auto& gap : judgement.gaps)
-    notes.push_back(fmt::format(
-        "{}: nothing is compared between {:g} and {:g} deg, where the reference has no points",
-        model, gap.from_deg, gap.to_deg));
+    add_once(notes, fmt::format("nothing is compared between {:g} and {:g} deg, where the "
+                                "reference has no points",
+                                gap.from_deg, gap.to_deg));
 }
 
-// Holds the results to the curves; nothing is run here but by `result_of` and `result_at`.
+// A model that is held to a reference.
+struct HeldModel {
+  std::vector<double> theta_deg;  // of the case's samples
+  compare::ZeroScales zero_scales;
+  compare::ResultAt at;               // no function where it cannot be run at any angles:
+  const ResultTable* only = nullptr;  // then these results
+};
+
+// Holds both models to the curves; nothing is run here but by `model_of`.
 void hold_to_curves(const compare::ReferenceDescription& description, const CaseOf& case_of,
-                    const ResultOf& result_of, const ResultAt& result_at, Outcome& outcome) {
+                    const std::function<HeldModel(Model)>& model_of, Outcome& outcome) {
   outcome.properties = {{"source", description.source},
                         {"how_made", description.how_made},
                         {"digits", std::to_string(description.digits)},
@@ -87,17 +96,13 @@ void hold_to_curves(const compare::ReferenceDescription& description, const Case
                                                        frames_of(the_case)));
     for (const auto& curve : curves)
       for (const auto& note : curve.notes) outcome.notes.push_back(model + ": " + note);
-    const ReferenceRun run = result_of(which);
+    const HeldModel held = model_of(which);
     compare::Judgement judgement;
-    if (result_at) {
-      const auto at = [&](const std::vector<double>& theta_deg) {
-        if (auto there = compare::rows_at(run.table, theta_deg)) return std::move(*there);
-        return result_at(which, theta_deg);
-      };
-      judgement = compare::judge(description, curves, at, run.table.theta_deg, run.zero_scales);
+    if (held.at) {
+      judgement = compare::judge(description, curves, held.at, held.theta_deg, held.zero_scales);
     } else {
-      ResultTable result = every_row(run.table, stride_of(description, the_case));
-      judgement = compare::judge(description, curves, result, run.zero_scales);
+      ResultTable result = every_row(*held.only, stride_of(description, the_case));
+      judgement = compare::judge(description, curves, result, held.zero_scales);
       judgement.result = std::move(result);
     }
     note_angles(model, judgement, outcome.notes);
@@ -200,9 +205,14 @@ Outcome hold(const ReferencePlace& place, const PartProgress& progress_of) {
       compare::check_files(description, used);
       hold_to_curves(
           description, [&](Model model) -> const Case& { return cases.of(model).the_case; },
-          [&](Model model) { return run_for_reference(cases.of(model), model, progress_of); },
-          [&](Model model, const std::vector<double>& theta_deg) {
-            return run_at_angles(cases.of(model), theta_deg, {.model = model}, progress_of);
+          [&](Model model) {
+            const PreparedCase& ready = cases.of(model);
+            const Samples samples = ready.samples(Way::driven);
+            return HeldModel{samples.theta_deg, zero_scales(ready.the_case, samples),
+                             [&ready, model, &progress_of](const std::vector<double>& theta_deg) {
+                               return run_at_angles(ready, theta_deg, {.model = model},
+                                                    progress_of);
+                             }};
           },
           outcome);
     }
@@ -241,7 +251,20 @@ Outcome hold_results(const std::filesystem::path& folder, const CaseOf& case_of,
   Outcome outcome;
   outcome.name = description.name;
   outcome.kind = compare::to_string(description.kind);
-  hold_to_curves(description, case_of, result_of, result_at, outcome);
+  std::map<Model, ReferenceRun> runs;
+  hold_to_curves(
+      description, case_of,
+      [&](Model model) {
+        const ReferenceRun& run = runs[model] = result_of(model);
+        HeldModel held{run.table.theta_deg, run.zero_scales, {}, &run.table};
+        if (result_at)
+          held.at = [&run, &result_at, model](const std::vector<double>& theta_deg) {
+            if (auto there = compare::rows_at(run.table, theta_deg)) return std::move(*there);
+            return result_at(model, theta_deg);
+          };
+        return held;
+      },
+      outcome);
   outcome.other_case = differing_keys(theirs, case_of(Model::analytic));
   if (!outcome.other_case.empty())
     outcome.notes.push_back("was made for another case: " + outcome.other_case);

@@ -11,6 +11,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/study/failed_point.h"
 #include "bentaxis/study/published_section.h"
@@ -22,13 +23,10 @@ namespace {
 
 constexpr auto kModel = study::Model::analytic;
 
-// The angle of a record within its turn.
-double in_turn(double theta_deg) { return theta_deg - 360 * std::floor(theta_deg / 360); }
-
 // Value of a column at an angle that the table has.
 double at_angle(const ResultTable& table, std::size_t column, double theta_deg) {
   const auto& theta = table.theta_deg;
-  const auto row = std::lower_bound(theta.begin(), theta.end(), in_turn(theta_deg));
+  const auto row = std::lower_bound(theta.begin(), theta.end(), wrap_degrees(theta_deg));
   return table.at(static_cast<std::size_t>(row - theta.begin()), column);
 }
 
@@ -322,7 +320,7 @@ DataModel::DataModel(Case base, IdentificationData data, bool kernel) {
       state.outputs.push_back(*datum.output);
     else if (datum.curve)
       for (const double theta_deg : datum.curve->theta_deg)
-        state.angles.push_back(in_turn(theta_deg));
+        state.angles.push_back(wrap_degrees(theta_deg));
     else
       state.table = true;
   }

@@ -226,7 +226,7 @@ bool is_record(const ForeignTable& table, std::size_t column, double degrees_per
       uneven = std::max(uneven, std::abs(past - step * static_cast<double>(i)));
       off_grid = std::max(off_grid, std::abs(past - grid * std::round(past / grid)));
     }
-    uneven = std::min(uneven, off_grid);
+    uneven = std::min({uneven, off_grid, least / 2});
     map.rounding_deg = std::min(uneven, std::abs(scale) * half_of_last_digit(largest, digits));
     if (map.rounding_deg < 1e-9) map.rounding_deg = 0;
   }

@@ -397,9 +397,11 @@ TimingRow suction_speed_row(const Case& the_case, const SuctionSpeed& found) {
           found.losses.begin(), found.losses.end(), [&](const auto& a, const auto& b) {
             return std::abs(a.first - *found.rpm) < std::abs(b.first - *found.rpm);
           });
-      r.text +=
-          fmt::format("; at it incomplete filling costs {}{}", percent_of_stroke(nearest.second),
-                      nearest.second > kLargestFillingLoss ? ": not filled" : "");
+      r.text += nearest.second <= 0
+                    ? "; at it the chambers fill"
+                    : fmt::format("; at it incomplete filling costs {}{}",
+                                  percent_of_stroke(nearest.second),
+                                  nearest.second > kLargestFillingLoss ? ": not filled" : "");
     }
   }
   if (!found.stopped.empty()) r.text += "; the search ends " + found.stopped;

@@ -152,9 +152,10 @@ std::string timing_answer(const std::vector<TimingRow>& rows) {
                        meant, limited);
   if (names.empty()) return std::string(kPortTiming) + "within all limits.";
   return fmt::format(
-      "{}{} of {} quantities with a limit exceed it: {} (pressure --advise: what to "
+      "{}{} of {} quantities with a limit exceed it: {}{} (pressure --advise: what to "
       "change).",
-      kPortTiming, names.size(), limited, fmt::join(names, ", "));
+      kPortTiming, names.size(), limited, fmt::join(names, ", "),
+      meant > 0 ? fmt::format("; {} more as intended", meant) : "");
 }
 
 std::vector<analytic::ValidityLimit> limits_of_turn(Case the_case, const Assumptions& assumptions,

@@ -204,7 +204,7 @@ struct Judgement {
   ResultTable resampling;       ///< how far it may be off there: by resampling, estimated, or by
                                 ///< the rounding of its angles
   ResultTable result;           ///< of a model that followed: at the angles of all curves
-  bool at_own_angles = false;   ///< a model followed to angles that it had not been run at
+  bool at_own_angles = false;   ///< these are not among the samples of the case
   struct Gap {
     double from_deg = 0, to_deg = 0;
   };
@@ -214,7 +214,7 @@ struct Judgement {
   bool agrees() const;  ///< something was compared and nothing failed
 };
 
-/// A model at any angles of a turn, deg. The table's angles may be off by round-off.
+/// A model at any angles of a turn, deg.
 using ResultAt = std::function<ResultTable(const std::vector<double>& theta_deg)>;
 
 /// Rows of a table at these angles of a turn; nothing where it lacks one.
