@@ -580,22 +580,24 @@ class OwnAnglesTest(RegressTest):
         size = float(re.search(r"differs +ref +Rs +\S+ N +(\S+)", out)[1])
         self.assertGreater(size, 0.25)
 
-    def test_no_pump_has_what_would_explain_a_wrong_sign(self):
-        """The suction pressure that comes nearest is below absolute vacuum: it is neither named nor listed."""
+    def test_no_pump_has_what_would_explain_an_offset(self):
+        """The suction pressure that comes nearest, -12 bar, is below absolute vacuum: it is neither named nor listed."""
         rows = self.record(lambda i: i % 20 == 3)
-        column = rows[0].index("Rb1_z1_N")
+        column = rows[0].index("Rs_1_z2_N")
         for row in rows[1:]:
-            row[column] = negated(row[column])
+            row[column] = repr(float(row[column]) - 2000)
         (self.folder / "record.csv").write_text("".join(",".join(row) + "\n" for row in rows))
         self.run_program("reference", "new", self.CASE, "--from", "record.csv", "--accept", "--out", "ref")
         out = self.regress("ref", "--json-file", "regress.json", status=OUT_OF_TOLERANCE)
         self.assertIn("No parameter of the case explains the difference", out)
         [section] = [run for run in json.loads((self.folder / "regress.json").read_text())["runs"]
                      if run["title"] == "What would explain the difference"]
+        self.assertGreater(len(section["table"]["rows"]), 0)
         for row in section["table"]["rows"]:
             named = dict(zip(section["table"]["columns"], row))
             if named["parameter"] == "pressure.suction_bar":
                 self.assertGreater(named["nearest"], -1.014)
+        self.assertNotIn("pressure.suction_bar 0 -> -", out)
 
     def test_the_wrong_parameter_explains_it(self):
         """And what explains it in the case makes it agree: both commands say one thing."""
