@@ -358,7 +358,7 @@ class ForeignCurveTest(RegressTest):
                 self.assertEqual(by_group[model, group], "passed")
             for group in ("Rc", "Rb2", "Rcs", "Fh", "Th", "Rcn"):
                 self.assertEqual(by_group[model, group], "skipped")
-        self.assert_mentions(out, "computed and compared at the reference's own 400 angles", "missing     ref: no curve of Fh, Rb2, Rc, Rcn, Rcs", "27 of 30")
+        self.assert_mentions(out, "the models are computed at the reference's own 400 angles", "missing     ref: no curve of Fh, Rb2, Rc, Rcn, Rcs", "27 of 30")
         # No more digits than the curve has.
         self.assertEqual(max(float(d) for d in re.findall(r"e-\d\d +(\d+\.\d) ", out)), 3.0)
 
@@ -552,7 +552,7 @@ class OwnAnglesTest(RegressTest):
                 worst = max(float(d) for d in re.findall(r"(\d\.\de[-+]\d\d) +\d+\.\d ", out))
                 self.assertLess(worst, 1e-11)  # of the multibody model's own
                 self.assert_mentions(out, "nothing is compared between 98 and 103 deg" if "rows" in name else
-                                     "computed and compared at the reference's own")
+                                     "the models are computed at the reference's own")
         out = self.held(self.record(lambda i: i % 10 == 3 and not 600 <= i < 850), DONE)
         self.assert_mentions(out, "nothing is compared between 59.3 and 85.3 deg")
 

@@ -51,7 +51,7 @@ void note_angles(const std::string& model, const compare::Judgement& judgement,
         "error of up to {:.1e} of peak; this is added to the tolerance around each angle",
         model, judgement.resampling_error));
   if (judgement.at_own_angles)
-    add_once(notes, fmt::format("computed and compared at the reference's own {} angles",
+    add_once(notes, fmt::format("the models are computed at the reference's own {} angles",
                                 judgement.reference.rows()));
   for (const auto& gap : judgement.gaps)
     add_once(notes, fmt::format("nothing is compared between {:g} and {:g} deg, where the "
