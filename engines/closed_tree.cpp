@@ -4,10 +4,10 @@
 // integrates, the forces of the loops are its own, and the others are found at its own motion.
 #include "closed_tree.h"
 
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <limits>
 #include <sstream>
@@ -33,9 +33,11 @@ Settings::Settings(const std::string& known, const std::string& given) {
 
 double Settings::number(const std::string& name) const {
   const std::string& text = word(name);
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (end == text.c_str() || *end != 0 || !(value >= 0) || !std::isfinite(value))
+  // Not strtod: where the locale has a decimal comma it reads 0.5 as 0.
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || last != end || !(value >= 0) || !std::isfinite(value))
     throw std::runtime_error("setting " + name + "=" + text + ": must be a number of at least 0");
   return value;
 }

@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
-# Fails if one model links the other, or reaches into its folder past the include path, or what couples them or describes the pump for
-# engines of others knows one, or if report/
-# computes: documents take finished results. That a target finds
-# no headers but those of what it links is the build's doing (scripts/cmake/BentaxisTarget.cmake).
+# Fails if one model links the other or reaches into its folder past the include path; if what couples the models, or describes the pump for
+# engines of others, knows one; if report/ computes (documents take finished results); or if a number depends on the locale. That a target
+# finds no headers but those of what it links is the build's doing (scripts/cmake/BentaxisTarget.cmake).
 # usage: independence_test.sh SOURCE_DIR ANALYTIC_LIBRARY[,..] MULTIBODY_LIBRARY DOCUMENTS_LIBRARY[,..] ENGINES_LIBRARY
 set -euo pipefail
 source_dir=$1 multibody=$3 engines=$5
@@ -43,6 +42,14 @@ forbid_computing_calls() {  # library; what computes in studies/ reports its pro
   fi
 }
 
+# Functions of the C library whose numbers depend on the locale, where a host has set one.
+forbid_locale() {  # folder..
+  if grep -rnE '\b(strto[df]|ato[fl]|sto[df]|[vf]?s?n?scanf) *\(|\bs?n?printf *\([^;]*%[-+ 0-9.*]*[aefgAEFG]' "$@" --include='*.h' --include='*.cpp'; then
+    echo "error: numbers that depend on the locale: use number_in, number_text or fmt"
+    return 1
+  fi
+}
+
 forbid_include "$source_dir/analytic" multibody || status=1
 forbid_include "$source_dir/multibody" analytic || status=1
 for room in analytic multibody hydraulics; do
@@ -62,6 +69,9 @@ for library in "${analytic[@]}"; do
 done
 forbid_symbol "$multibody" analytic || status=1
 
+# The commands and the programs beside the module of Python run in a process of their own, which sets no locale.
+forbid_locale "$source_dir"/{analytic,multibody,hydraulics,coupled,core,compare,studies,report,engines,interfaces/fmu} || status=1
+
 # The check itself must be able to fail.
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -73,6 +83,12 @@ echo '#include "bentaxis/analytic/model.h"' > "$scratch/x.cpp"
 if forbid_computing_headers "$scratch" > /dev/null; then
   echo "error: the check does not notice a header that computes"; status=1
 fi
+for line in 'x = std::strtod(text, &end);' 'std::snprintf(text, 9, "%.3g", x);'; do
+  echo "$line" > "$scratch/x.cpp"
+  if forbid_locale "$scratch" > /dev/null; then
+    echo "error: the check does not notice $line"; status=1
+  fi
+done
 if forbid_computing_calls "$multibody" > /dev/null; then
   echo "error: the check does not notice calls that compute"; status=1
 fi
