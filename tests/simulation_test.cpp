@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 
 #include "bentaxis/analytic/model.h"
+#include "bentaxis/analytic/teeth.h"
+#include "bentaxis/analytic/validity.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/time_signal.h"
@@ -594,6 +597,134 @@ TEST(Responses, AreThoseOfTheModel) {
           for (int i = 0; i < 2; ++i) EXPECT_EQ(forces[i], both[i].tooth_force);
         }
     }
+}
+
+// ---- limits of validity -------------------------------------------------------------------------
+
+std::map<std::string, analytic::ValidityLimit> by_key(std::vector<analytic::ValidityLimit> limits) {
+  std::map<std::string, analytic::ValidityLimit> found;
+  for (analytic::ValidityLimit& limit : limits) found[limit.key] = std::move(limit);
+  return found;
+}
+
+std::string violated(const std::map<std::string, analytic::ValidityLimit>& limits) {
+  std::string keys;
+  for (const auto& [key, limit] : limits)
+    if (limit.violated_share > 0) keys += (keys.empty() ? "" : " ") + key;
+  return keys;
+}
+
+// Rows of a motion at constant speed at the angles of a turn.
+Case one_turn_in_time(const std::vector<std::string>& changes) {
+  constexpr int kAngles = 72;
+  std::vector<std::string> all = {"operation.samples_per_revolution=" + std::to_string(kAngles),
+                                  "drive.kind=speed", "drive.duration_s=1",
+                                  "drive.samples=" + std::to_string(kAngles - 1)};
+  all.insert(all.end(), changes.begin(), changes.end());
+  Case the_case =
+      read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" / "bap63_rated.toml", all);
+  the_case.drive->duration =
+      (kAngles - 1.0) / kAngles * 60 / std::abs(the_case.operation.speed_rpm);
+  return the_case;
+}
+
+TEST(LimitsInTime, AreThoseOfATurnAtConstantSpeed) {
+  struct Variant {
+    std::vector<std::string> changes;
+    std::string violated;  // keys
+  };
+  const Variant variants[] = {
+      {{}, ""},
+      {{"friction.block_viscous_Nm_per_rpm=0"}, "flank"},
+      {{"friction.block_viscous_Nm_per_rpm=0", "gear.flanks=two"}, ""},
+      {{"operation.speed_rpm=-1500"}, "friction turned"},
+      {{"block.bottom_area_mm2=140"}, "film point"},
+      {{"piston.contact_mm=41.5"}, "ring"},
+      {{"pressure.suction_bar=275", "pressure.delivery_bar=0"}, "friction"},
+      {{"pressure.suction_bar=-0.9", "pressure.delivery_bar=-0.9", "block.spring_force_N=0",
+        "operation.speed_rpm=3000"},
+       "point thrust"},
+  };
+  const std::vector<std::string> keys = {"flank",  "turned",   "film", "point",
+                                         "thrust", "friction", "ring"};
+  std::map<std::string, std::array<bool, 2>> seen;  // that it held, that it did not
+  for (const auto& [changes, expected] : variants) {
+    SCOPED_TRACE(testing::PrintToString(changes));
+    const Case the_case = one_turn_in_time(changes);
+    const Samples samples = sample_case(the_case, PressureTrace(the_case.pressure), 1,
+                                        the_case.operation.speed_rpm < 0);
+    const auto of_turn = by_key(analytic::check_validity(
+        the_case, the_case.analytic, samples, analytic::run(the_case, the_case.analytic, samples)));
+    const Trajectory motion = run(the_case);
+    const auto in_time = by_key(analytic::limits_in_time(the_case, the_case.analytic, motion));
+    EXPECT_EQ(violated(in_time), expected);
+    ASSERT_EQ(in_time.size(), of_turn.size());
+    for (const auto& [key, turn] : of_turn) {
+      const analytic::ValidityLimit& limit = in_time.at(key);
+      EXPECT_EQ(limit.applicable, turn.applicable) << key;
+      EXPECT_EQ(limit.violated_share, turn.violated_share) << key;
+      EXPECT_EQ(limit.rows, turn.rows) << key;
+      EXPECT_NEAR(limit.worst, turn.worst, 1e-9 * (1 + std::abs(turn.worst))) << key;
+      EXPECT_NEAR(limit.theta_deg, turn.theta_deg, 1e-9) << key;
+      EXPECT_EQ(limit.limit, turn.limit);
+    }
+    for (const std::string& key : keys)
+      seen[key][in_time.count(key) > 0 && in_time.at(key).violated_share > 0 ? 1 : 0] = true;
+  }
+  for (const std::string& key : keys)
+    EXPECT_EQ(seen[key], (std::array<bool, 2>{true, true})) << key;
+}
+
+TEST(LimitsInTime, FurtherPairsOfTeethAreCounted) {
+  Case the_case =
+      read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" / "bap63_teeth.toml");
+  const double reach = analytic::BevelTeeth(the_case.pump).geometry().reach;
+  const ChannelLayout at(the_case.pump);
+  Trajectory motion;
+  motion.table = trajectory_table("analytic", at, *the_case.drive);
+  const auto limit = [&] {
+    return by_key(analytic::limits_in_time(the_case, the_case.analytic, motion)).at("reach");
+  };
+  for (const double share : {0.5, 0.9, 1.1, 0.99}) {
+    std::vector<double> state(motion.table.state_names.size(), 0);
+    append_trajectory_row(motion.table, state, std::vector<double>(at.size(), 0), {});
+    motion.lag.push_back(0);
+    motion.teeth.emplace_back().pairs[2].approach = share * reach;
+    EXPECT_EQ(limit().violated_share > 0, motion.lag.size() > 2);
+  }
+  EXPECT_EQ(limit().violated_share, 0.25);
+  EXPECT_EQ(limit().row, 2U);
+  EXPECT_NEAR(limit().worst, 1.1e6 * reach, 1e-9);
+}
+
+// Each row by the direction in which it turns.
+TEST(LimitsInTime, FollowTheDirectionOfRotation) {
+  const Case the_case = one_turn_in_time({});
+  const ChannelLayout at(the_case.pump);
+  Trajectory motion;
+  motion.table = trajectory_table("analytic", at, *the_case.drive);
+  const auto found = [&] {
+    return by_key(analytic::limits_in_time(the_case, the_case.analytic, motion));
+  };
+  EXPECT_EQ(found().count("turned"), 0U);
+  for (const auto& [rpm, force] :
+       {std::pair{-1500.0, -40.0}, {1500.0, 10.0}, {1500.0, -20.0}, {-1500.0, 30.0}}) {
+    if (force == 30) {
+      EXPECT_EQ(found().at("turned").violated_share, 0);
+    }
+    std::vector<double> state(motion.table.state_names.size(), 0);
+    state[static_cast<std::size_t>(StateColumn::shaft_speed)] = rpm;
+    std::vector<double> values(at.size(), 0);
+    values[at.Rcs()] = force;
+    append_trajectory_row(motion.table, state, values, {});
+    motion.lag.push_back(0);
+  }
+  const auto limits = found();
+  EXPECT_EQ(limits.at("flank").violated_share, 0.5);
+  EXPECT_EQ(limits.at("flank").worst, -40);
+  EXPECT_EQ(limits.at("turned").violated_share, 0.5);  // of the rows that turn backwards
+  EXPECT_EQ(limits.at("turned").worst, 30);
+  EXPECT_EQ(limits.at("turned").row, 3U);
 }
 
 }  // namespace

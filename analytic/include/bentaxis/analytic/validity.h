@@ -1,4 +1,4 @@
-// Limits within which the model's assumptions hold, checked over a turn.
+// Limits within which the model's assumptions hold, checked over a turn or along a motion.
 #pragma once
 
 #include <string>
@@ -7,10 +7,11 @@
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/results/result_table.h"
+#include "bentaxis/results/trajectory.h"
 
 namespace bentaxis::analytic {
 
-/// One limit of validity over a run.
+/// One limit of validity over a run: `violated_share` is of its angles, or of the rows of a motion.
 struct ValidityLimit {
   std::string limit;          ///< what must hold
   std::string name;           ///< short name of the violation
@@ -25,6 +26,8 @@ struct ValidityLimit {
   /// Of every row whether it holds; of none where it is not applicable.
   enum class Row : unsigned char { unknown, holds, violated };
   std::vector<Row> rows = {};
+  std::size_t row = 0;  ///< of the worst value
+  double margin = 0;    ///< smallest distance from the limit; < 0: violated, or would be
 };
 
 /// Share of the angles at which any of the limits is violated, 0..1: it is no pump's behaviour
@@ -38,5 +41,10 @@ double share_beyond(const std::vector<ValidityLimit>& limits);
 /// looked at.
 std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumptions& assumptions,
                                           const Samples& samples, const ResultTable& table);
+
+/// The same limits in the rows of a motion, by either model. Shaft and block each have their own
+/// angle and speed there, and either direction.
+std::vector<ValidityLimit> limits_in_time(const Case& the_case, const Assumptions& assumptions,
+                                          const Trajectory& run);
 
 }  // namespace bentaxis::analytic
