@@ -22,6 +22,7 @@
 #include "bentaxis/study/published_section.h"
 #include "bentaxis/study/rounding_spread.h"
 #include "bentaxis/study/timing.h"
+#include "bentaxis/study/turn_summary.h"
 
 namespace bentaxis::study {
 namespace {
@@ -543,12 +544,7 @@ void Maker::warn() {
     if (ready->hydraulics && (ready == &r.first || ready->the_case.file != r.first.the_case.file))
       if (auto warning = accuracy_warning(ready->the_case, *ready->hydraulics))
         r.warnings.push_back(std::move(*warning));
-  for (const auto& limit : r.limits)
-    if (limit.applicable && limit.violated_share > 0)
-      r.warnings.push_back(
-          {limit.name, fmt::format("over {:.3g} % of the turn, worst {:.4g} {} at {:g} deg: {}.",
-                                   100 * limit.violated_share, limit.worst, limit.unit,
-                                   limit.theta_deg, limit.consequence)});
+  append(r.warnings, limit_warnings(r.limits));
   r.rounding = rounding_lines(r.first.the_case, r.first.the_case.analytic);
   for (const auto& text : rounding_warnings(r.rounding))
     r.warnings.push_back({"digits lost to rounding", text});

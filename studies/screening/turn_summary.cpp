@@ -121,20 +121,55 @@ std::vector<std::string> TurnSummary::answers() const {
   return sentences;
 }
 
-std::vector<std::string> limit_answers(const std::vector<analytic::ValidityLimit>& limits) {
-  std::vector<std::string> sentences;
-  for (const auto& limit : limits)
+namespace {
+
+// "over 7.5 % of the turn"; of a motion "in 7.5 % of the rows".
+std::string share_text(double share, const std::vector<double>& time_s) {
+  return time_s.empty() ? fmt::format("over {:.3g} % of the turn", 100 * share)
+                        : fmt::format("in {:.3g} % of the rows", 100 * share);
+}
+
+// use(limit, its share in words, where its worst value is) of those that are violated.
+template <class Use>
+void for_each_violated(const std::vector<analytic::ValidityLimit>& limits,
+                       const std::vector<double>& time_s, int digits, const Use& use) {
+  for (const analytic::ValidityLimit& limit : limits)
     if (limit.applicable && limit.violated_share > 0)
-      sentences.push_back(fmt::format(
-          "Not valid over {:.3g} % of the turn, where this does not hold: {} (worst {:.4g} {} at "
-          "{:.4g} deg).",
-          100 * limit.violated_share, limit.limit, limit.worst, limit.unit, limit.theta_deg));
+      use(limit, share_text(limit.violated_share, time_s),
+          time_s.empty() ? fmt::format("{:.{}g} deg", limit.theta_deg, digits)
+                         : fmt::format("{:.{}g} ms", 1e3 * time_s[limit.row], digits));
+}
+
+}  // namespace
+
+std::vector<std::string> limit_answers(const std::vector<analytic::ValidityLimit>& limits,
+                                       const std::vector<double>& time_s) {
+  std::vector<std::string> sentences;
+  for_each_violated(
+      limits, time_s, 4, [&](const auto& limit, const auto& share, const auto& place) {
+        sentences.push_back(
+            fmt::format("Not valid {}, where this does not hold: {} (worst {:.4g} {} at {}).",
+                        share, limit.limit, limit.worst, limit.unit, place));
+      });
   return sentences;
 }
 
-std::string not_valid_text(const std::vector<analytic::ValidityLimit>& limits) {
+std::vector<Warning> limit_warnings(const std::vector<analytic::ValidityLimit>& limits,
+                                    const std::vector<double>& time_s) {
+  std::vector<Warning> warnings;
+  for_each_violated(
+      limits, time_s, 6, [&](const auto& limit, const auto& share, const auto& place) {
+        warnings.push_back(
+            {limit.name, fmt::format("{}, worst {:.4g} {} at {}: {}.", share, limit.worst,
+                                     limit.unit, place, limit.consequence)});
+      });
+  return warnings;
+}
+
+std::string not_valid_text(const std::vector<analytic::ValidityLimit>& limits,
+                           const std::vector<double>& time_s) {
   const double share = analytic::share_beyond(limits);
-  return share > 0 ? fmt::format("over {:.3g} % of the turn", 100 * share) : "";
+  return share > 0 ? share_text(share, time_s) : "";
 }
 
 std::string timing_answer(const std::vector<TimingRow>& rows) {

@@ -61,10 +61,16 @@ class TurnSummary {
 };
 
 /// What must hold and does not, each in a sentence.
-std::vector<std::string> limit_answers(const std::vector<analytic::ValidityLimit>& limits);
-
-/// "over 7.5 % of the turn": the largest share in which a limit does not hold; "" where all do.
-std::string not_valid_text(const std::vector<analytic::ValidityLimit>& limits);
+/// @param time_s  of the rows, of a motion; empty: the limits are of a turn
+std::vector<std::string> limit_answers(const std::vector<analytic::ValidityLimit>& limits,
+                                       const std::vector<double>& time_s = {});
+/// The same with what it means.
+std::vector<Warning> limit_warnings(const std::vector<analytic::ValidityLimit>& limits,
+                                    const std::vector<double>& time_s = {});
+/// "over 7.5 % of the turn", "in 7.5 % of the rows": the share in which any of the limits does not
+/// hold; "" where all do.
+std::string not_valid_text(const std::vector<analytic::ValidityLimit>& limits,
+                           const std::vector<double>& time_s = {});
 
 /// How every such sentence begins.
 inline constexpr const char* kPortTiming = "Port timing: ";
