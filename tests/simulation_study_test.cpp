@@ -14,7 +14,9 @@
 #include "bentaxis/study/simulation.h"
 #include "bentaxis/study/simulation_document.h"
 #include "bentaxis/study/state_doubts.h"
-#include "simulation_pieces.h"
+#include "differences.h"
+#include "event_match.h"
+#include "pressure_steps.h"
 
 namespace bentaxis::study {
 namespace {
@@ -155,7 +157,7 @@ SimulationResult result(double of_allowed, double judged_until_s) {
   GroupDifference group;
   group.group = "Rs";
   group.in_time = 3e-7;
-  group.time_s = 0.75;
+  group.time_s = group.allowed_s = 0.75;
   group.of_allowed = of_allowed;
   r.groups = {group};
   return r;
@@ -195,6 +197,49 @@ TEST(SimulationStudy, HeadlineOfBothModels) {
   EXPECT_EQ(r.headline(),
             "2.5 s simulated by the analytic model; work and power do not balance. A check fails: "
             "analytic: power is 1.5e+00 of its scale, 1 allowed");
+}
+
+// Disturbances grow: what exceeds its tolerance most need not be the largest difference.
+TEST(SimulationStudy, HeadlineStatesTheLargestDifference) {
+  SimulationResult r = result(0.25, 2.5);
+  GroupDifference late;
+  late.group = "Fh";
+  late.in_time = 4e-5;
+  late.time_s = late.allowed_s = 2.25;
+  late.of_allowed = 0.125;
+  GroupDifference flow = late;
+  flow.group = "leakage";
+  flow.in_time = 0.5;
+  flow.judged = false;
+  flow.of_allowed = not_computed();
+  r.groups = {late, flow, r.groups[0]};
+  sort_groups(r.groups);
+  EXPECT_EQ(r.worst()->group, "Rs");
+  EXPECT_EQ(r.largest()->group, "Fh");
+  EXPECT_THAT(r.headline(),
+              testing::StartsWith(
+                  "The trajectories agree: largest difference 4.0e-05 of peak (Fh, at 2.25 s), at "
+                  "most 0.25 of the tolerance (Rs, at 0.75 s; 1e-06 of peak times the measured "
+                  "amplification of disturbances); disturbances"));
+  // Of one group too: its largest difference is later than that over its tolerance.
+  r = result(0.25, 2.5);
+  r.groups[0].allowed_s = 0.5;
+  EXPECT_THAT(r.headline(),
+              HasSubstr("(Rs, at 0.75 s), at most 0.25 of the tolerance (Rs, at 0.5"));
+}
+
+TEST(SimulationStudy, HeadlineCountsTheRowsBetweenSteps) {
+  SimulationResult r = result(0.25, 2.5);
+  r.analytic.emplace().lag.assign(8, 0);
+  EXPECT_THAT(r.headline(), Not(HasSubstr("Not compared")));
+  r.rows_at_steps = 3;
+  const char* const said =
+      "ot compared: 3 of 8 rows, at which the models stand on different sides of a step of the "
+      "pressure";
+  EXPECT_THAT(r.headline(), testing::EndsWith(said));
+  r.rows_at_steps = 8;
+  r.groups.clear();
+  EXPECT_THAT(r.headline(), testing::StartsWith("The models cannot be compared. Not compared: 8"));
 }
 
 TEST(SimulationStudy, HeadlineOfAPeriodicMotion) {
@@ -282,6 +327,111 @@ TEST(SimulationStudy, AMissingValueIsNoAgreement) {
   const SimulationResult r = judged(idle, run, nullptr);
   EXPECT_FALSE(r.agrees());
   EXPECT_EQ(r.worst()->group, "Rcs");
+}
+
+// Runs of one row per angle of the block, deg, in which every chamber has the pressure of a trace;
+// Rs follows it.
+Case stepped_case() {
+  return read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_motor_start.toml",
+                   {"pressure.transition_deg=0"});
+}
+Trajectory run_at_angles(const Case& the_case, const std::vector<double>& block_deg) {
+  const ChannelLayout at(the_case.pump);
+  const PressureTrace pressure(the_case.pressure);
+  Trajectory run;
+  run.table = trajectory_table("analytic", at, *the_case.drive);
+  for (const double angle : block_deg) {
+    std::vector<double> state(run.table.state_names.size(), 0);
+    state[static_cast<std::size_t>(StateColumn::time)] = 0.5 * static_cast<double>(run.lag.size());
+    state[static_cast<std::size_t>(StateColumn::psi)] = angle;
+    std::vector<double> values(at.size(), 0);
+    for (int k = 0; k < at.pistons(); ++k)
+      values[at.pressure(k)] = values[at.Rs(k, 2)] =
+          pressure(piston_angle_deg(angle, k + 1, at.pistons()));
+    append_trajectory_row(run.table, state, values, {});
+    run.lag.push_back(0);
+  }
+  return run;
+}
+
+TEST(PressureSteps, AreWhereRunsStandOnDifferentSides) {
+  const Case the_case = stepped_case();
+  const PressureSteps steps(the_case.pressure, the_case.pump);
+  const auto between = [&](double first, double second, double angle_error) {
+    return steps.between(run_at_angles(the_case, {first}), run_at_angles(the_case, {second}), 0,
+                         angle_error);
+  };
+  constexpr double kError = 1e-6;  // rad, 5.7e-5 deg
+  // Piston 1 steps at 0 and 180 deg, piston 2 at 72 deg later.
+  for (const double edge : {0.0, 180.0, 72.0, 360.0 * 50 + 180}) {
+    EXPECT_TRUE(between(edge - 1e-5, edge + 1e-5, kError)) << edge;
+    EXPECT_TRUE(between(edge + 1e-5, edge - 1e-5, kError)) << edge;
+    EXPECT_FALSE(between(edge - 1e-5, edge - 2e-5, kError)) << edge << ": on one side";
+    EXPECT_FALSE(between(edge - 1e-4, edge + 1e-5, kError)) << edge << ": too far for an error";
+    EXPECT_FALSE(between(edge - 1e-5, edge + 1e-4, kError)) << edge;
+    EXPECT_TRUE(between(edge - 1e-4, edge + 1e-4, 1e-5)) << edge;
+  }
+  EXPECT_FALSE(between(30, 31, kError));
+  EXPECT_FALSE(PressureSteps().between(run_at_angles(the_case, {-1e-5}),
+                                       run_at_angles(the_case, {1e-5}), 0, kError));
+  // A smooth rise has no step, however steep.
+  const Case smooth = read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_motor_start.toml",
+                                {"pressure.transition_deg=1e-3"});
+  EXPECT_FALSE(
+      PressureSteps(smooth.pressure, smooth.pump)
+          .between(run_at_angles(smooth, {179.9999}), run_at_angles(smooth, {180.0001}), 0, 1e-5));
+}
+
+// Simbody may stand on an edge, or a hair before it, and have the pressure behind it.
+TEST(PressureSteps, AModelOnAnEdgeMayHaveEitherPressure) {
+  const Case the_case = stepped_case();
+  const PressureSteps steps(the_case.pressure, the_case.pump);
+  const auto at = [&](double angle, double side) {
+    Trajectory run = run_at_angles(the_case, {side});
+    run.table.states[static_cast<std::size_t>(StateColumn::psi)] = angle;
+    return run;
+  };
+  EXPECT_TRUE(steps.between(at(180, 179), at(180, 181), 0, 0));
+  EXPECT_TRUE(steps.between(at(180, 179), at(180 - 1e-10, 181), 0, 0));
+  EXPECT_TRUE(steps.between(at(180 + 1e-10, 179), at(180, 181), 0, 0));
+  // Not where it is off the edge: that is a wrong pressure.
+  EXPECT_FALSE(steps.between(at(180 - 1e-6, 179), at(180 - 1e-6, 181), 0, 1e-6));
+  EXPECT_FALSE(steps.between(at(180 + 1e-6, 179), at(180 + 1e-6, 181), 0, 1e-6));
+}
+
+TEST(PressureSteps, AWrongPressureIsFound) {
+  const Case the_case = stepped_case();
+  const PressureSteps steps(the_case.pressure, the_case.pump);
+  const ChannelLayout at(the_case.pump);
+  const Trajectory first = run_at_angles(the_case, {20, 180 - 1e-5, 200, 180 - 1e-5});
+  const Trajectory second = run_at_angles(the_case, {20, 180 + 1e-5, 200, 180 - 1e-5});
+  const std::vector<double> allowed(4, 1e-6);
+  const Scales scales = scales_of(the_case, first, 1e-6);
+  const auto worst = [&](const Trajectory& other, const PressureSteps& known) {
+    SimulationResult r = result(0, 2.5);
+    r.groups = group_differences(first, other, &first, scales, allowed, known);
+    sort_groups(r.groups);
+    return *r.worst();
+  };
+  EXPECT_EQ(worst(second, steps).in_time, 0);
+  EXPECT_EQ(worst(second, steps).over_angle, 0);
+  // Were it compared, the step would be the difference.
+  EXPECT_GT(worst(second, {}).of_allowed, 1e5);
+  EXPECT_EQ(worst(second, {}).time_s, 0.5);
+  // Wrong away from the step; at the step in another chamber, or by another value; or where both
+  // runs stand on one side of it.
+  const auto spoilt = [&](std::size_t row, int piston, double factor) {
+    Trajectory other = second;
+    for (const std::size_t c : {at.pressure(piston), at.Rs(piston, 2)})
+      other.table.results.values[row * other.table.results.columns() + c] =
+          factor * 1e7 / other.table.results.channels[c].unit_in_si;
+    return other;
+  };
+  for (const auto& [row, piston] :
+       {std::pair<std::size_t, int>{0, 0}, {2, 3}, {1, 1}, {1, 0}, {3, 0}}) {
+    EXPECT_GT(worst(spoilt(row, piston, 1.25), steps).of_allowed, 1e3) << row << " " << piston;
+    EXPECT_EQ(worst(spoilt(row, piston, 1.25), steps).allowed_s, 0.5 * static_cast<double>(row));
+  }
 }
 
 // A run put together by hand: two rows, of a pump whose teeth give way.

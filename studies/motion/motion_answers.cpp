@@ -107,26 +107,14 @@ std::optional<MotionAnswers::Delivery> delivery_of(const Trajectory& run) {
   return delivery;
 }
 
-std::optional<MotionAnswers::BeyondPlate> beyond_plate(const Trajectory& run,
-                                                       const Case& the_case) {
-  const ResultTable& results = run.table.results;
-  const std::size_t x = results.find("xh_x2_mm"), y = results.find("yh_y2_mm");
-  if (!the_case.pump.port_plate || x == results.columns() || y == results.columns())
-    return std::nullopt;
-  MotionAnswers::BeyondPlate beyond;
-  beyond.plate_mm = the_case.pump.port_plate->r4 * 1e3;
-  std::size_t count = 0;
-  for (std::size_t row = 0; row < rows_of(run); ++row) {
-    const double radius = std::hypot(results.at(row, x), results.at(row, y));
-    if (!(radius > beyond.plate_mm)) continue;  // not where no film force has a point either
-    ++count;
-    if (radius <= beyond.largest_mm) continue;
-    beyond.largest_mm = radius;
-    beyond.largest_s = time_of(run, row);
-  }
-  if (count == 0) return std::nullopt;
-  beyond.share = static_cast<double>(count) / static_cast<double>(rows_of(run));
-  return beyond;
+std::optional<MotionAnswers::BeyondPlate> beyond_plate(
+    const std::vector<analytic::ValidityLimit>& limits, const Trajectory& run,
+    const Case& the_case) {
+  for (const analytic::ValidityLimit& limit : limits)
+    if (limit.key == "point" && limit.applicable && limit.violated_share > 0)
+      return MotionAnswers::BeyondPlate{limit.violated_share, limit.worst, time_of(run, limit.row),
+                                        the_case.pump.port_plate->r4 * 1e3};
+  return std::nullopt;
 }
 
 std::optional<MotionAnswers::Walls> walls_of(const Trajectory& run, const Case& the_case) {
@@ -184,7 +172,9 @@ MotionAnswers motion_answers(const Trajectory& run, const Case& the_case) {
   answers.drive_work = run.record.work_of_drives;
   answers.drive_has_inertia = the_case.drive && the_case.drive->motor;
   answers.delivery = delivery_of(run);
-  answers.beyond_plate = beyond_plate(run, the_case);
+  if (results.rows() > 0)
+    answers.limits = analytic::limits_in_time(the_case, the_case.analytic, run);
+  answers.beyond_plate = beyond_plate(answers.limits, run, the_case);
   answers.walls = walls_of(run, the_case);
   return answers;
 }

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
+#include "bentaxis/analytic/validity.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/results/trajectory.h"
 
@@ -48,9 +50,12 @@ struct MotionAnswers {
   };
   std::optional<Delivery> delivery;
 
-  /// Where the film force acts beyond the port plate, of which the plate of a case is known.
+  /// Limits of validity in the rows; none of a run without results.
+  std::vector<analytic::ValidityLimit> limits;
+
+  /// Of these: where the film force acts beyond the port plate, of which the plate is known.
   struct BeyondPlate {
-    double share = 0;  ///< of the rows
+    double share = 0;  ///< of the rows with a film force
     double largest_mm = 0, largest_s = 0;
     double plate_mm = 0;  ///< outer radius r4
   };

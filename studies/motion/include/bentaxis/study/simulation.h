@@ -58,6 +58,7 @@ struct GroupDifference {
   double of_allowed = 0;
   /// What differences are over: the peak, at least compare::kMinScale of the loads of the run.
   double scale = 0;
+  double allowed_s = 0;  ///< when that largest difference over what is allowed is
 };
 
 /// Touches of both models that belong together.
@@ -121,9 +122,13 @@ struct SimulationResult {
 
   // With both:
   std::vector<GroupDifference> groups;
-  std::vector<double> difference;  ///< per row: largest of any reaction, of peak
-  double speed_difference = 0;     ///< of the shaft, of its largest speed
-  double lag_difference = 0;       ///< of theta - psi, rad
+  std::vector<double> difference;  ///< per row: largest of any reaction, of peak; not_computed() of
+                                   ///< rows_at_steps
+  /// In the compared time: rows at which the integration errors of the models leave them on
+  /// different sides of a step of the pressure. They are not compared.
+  std::size_t rows_at_steps = 0;
+  double speed_difference = 0;  ///< of the shaft, of its largest speed
+  double lag_difference = 0;    ///< of theta - psi, rad
   EventMatch events;
   std::vector<compare::Check> checks;
   std::vector<Effort> effort;
@@ -134,7 +139,8 @@ struct SimulationResult {
   /// Allowed difference at a row, of peak: the wanted error times the amplification of
   /// disturbances.
   double allowed(std::size_t row) const { return choice.error * growth[row]; }
-  const GroupDifference* worst() const;  ///< largest difference over its tolerance
+  const GroupDifference* worst() const;    ///< largest difference over its tolerance
+  const GroupDifference* largest() const;  ///< largest difference in time of what is judged
   /// Time that a model needs for an error, between its efforts; not_computed() where none of them
   /// reached it.
   double seconds_for(Model model, double error) const;
