@@ -400,6 +400,7 @@ inline void to_json(Json& json, const ValidityRow& row) {
           {"violated", row.applicable && row.violated_share > 0},
           {"applicable", row.applicable},
           {"consequence", row.consequence}};
+  if (row.time_s) json["time_s"] = known(*row.time_s);
 }
 
 inline void to_json(Json& json, const Budget::Torque& line) {

@@ -140,7 +140,7 @@ report::Section duty_section(const LifeStudy& s) {
 }
 
 std::string limit_name(const study::LifeLimit& limit) {
-  return to_string(limit.bearing) + " bearing: " + limit.limit;
+  return (limit.of_bearing ? to_string(limit.bearing) + " bearing: " : "") + limit.limit;
 }
 
 // "over 7.5 % of the revolutions"; a pump at rest has angles alone.
@@ -186,7 +186,7 @@ std::vector<report::ValidityRow> validity_of(const LifeStudy& s) {
   std::vector<report::ValidityRow> rows;
   for (const study::LifeLimit& l : s.analytic.life.limits)
     rows.push_back(
-        {limit_name(l), "N",
+        {limit_name(l), l.unit,
          l.consequence +
              (s.duty.rows.size() > 1 ? " (worst in " + s.duty.name_of(l.point) + ")" : ""),
          true, l.violated_share, l.worst, l.theta_deg});
@@ -354,9 +354,9 @@ std::string life_text(const LifeStudy& s) {
   }
   for (const study::LifeLimit& l : s.analytic.life.limits)
     if (l.violated_share > 0)
-      text += fmt::format("exceeded {}: {} (worst {:.4g} N): {}\n",
+      text += fmt::format("exceeded {}: {} (worst {:.4g} {}): {}\n",
                           share_text(l.violated_share, s.analytic.life), limit_name(l), l.worst,
-                          l.consequence);
+                          l.unit, l.consequence);
   return text;
 }
 

@@ -118,7 +118,8 @@ function render() {
   for (const [id, usual, build] of sectionsOf(report, data)) {
     const body = build(report, data);
     if (!body) continue;
-    const title = id === "runs" && report.runs.length === 1 ? report.runs[0].title : usual;
+    const title = id === "runs" && report.runs.length === 1 ? report.runs[0].title
+      : id === "validity" && inTime(report) ? "Validity in time" : usual;
     main.append(el("section", { id, "aria-labelledby": id + "-title" },
       el("h2", { id: id + "-title" }, title), body));
     shown.push({ id, title });

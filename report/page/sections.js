@@ -85,12 +85,13 @@ const commonInputs = ({ common }) => !list(common).length ? null : table([
   { head: "What would catch an error in it", cell: r => r.caught_by || DASH },
 ], common);
 
+const inTime = ({ validity }) => "time_s" in validity[0];  // in the rows of a motion; else over a turn
 const validity = ({ validity }) => !list(validity).length ? null : table([
   { head: "Limit", main: true, cell: r => r.limit },
   { head: "State", cell: r => chip(r.violated == null ? "not computed" : r.violated ? "violated" : "holds") },
-  { head: "Share of the turn", num: true, cell: r => unit(number(r.share_percent, 3), "%") },
+  { head: inTime({ validity }) ? "Share of the rows" : "Share of the turn", num: true, cell: r => unit(number(r.share_percent, 3), "%") },
   { head: "Worst value", num: true, cell: r => unit(number(r.worst), r.unit) },
-  { head: "at", num: true, cell: r => degrees(r.theta_deg) },
+  { head: "at", num: true, cell: r => "time_s" in r ? unit(number(r.time_s == null ? null : 1e3 * r.time_s, 4), "ms") : degrees(r.theta_deg) },
   { head: "Consequence where violated", cell: r => r.consequence || DASH },
 ], validity, { rowClass: r => (r.violated ? "flag" : "") });
 

@@ -348,11 +348,13 @@ struct CommonInput {
   std::string input, value, caught_by;
 };
 
-/// A limit of the models' validity over the turn. Where it does not apply, the numbers are absent.
+/// A limit of the models' validity over the turn, or in the rows of a motion. Where it does not
+/// apply, the numbers are absent.
 struct ValidityRow {
   std::string limit, unit, consequence;
   bool applicable = true;
   double violated_share = 0, worst = 0, theta_deg = 0;
+  std::optional<double> time_s = std::nullopt;  ///< of the worst value, of a motion
 };
 
 /// How a table was obtained.
