@@ -8,7 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "bentaxis/designs/duty_cycle.h"
@@ -430,6 +432,80 @@ TEST(PumpLife, SaysWhereItsLimitsAre) {
   EXPECT_NEAR(share("static"), 1, 1e-9);
   for (const char* key : {"smallest", "largest", "static"})
     EXPECT_EQ(limit_of(life, Bearing::cylindrical, key).violated_share, 0) << key;
+}
+
+// Of two rows, the second for three times as long at half the speed.
+TEST(PumpLife, NamesTheLimitsOfTheModels) {
+  const Case the_case = rated();
+  LifePoint first = turn(the_case), second = turn(the_case);
+  second.share = 3;
+  second.speed_rpm = first.speed_rpm / 2;
+  const std::size_t rows = first.theta_deg.size();
+  using Row = analytic::ValidityLimit::Row;
+  const auto limit = [&](const char* key, double worst, double margin) {
+    analytic::ValidityLimit made;
+    made.key = key;
+    made.limit = std::string("limit ") + key;
+    made.unit = "mm";
+    made.worst = worst;
+    made.margin = margin;
+    made.theta_deg = worst;
+    made.rows.assign(rows, Row::holds);
+    return made;
+  };
+  first.validity = {limit("film", 1, 2), limit("point", 3, 4), limit("thrust", 5, -6)};
+  second.validity = {limit("film", 7, -8), limit("point", 9, 10)};
+  first.validity[0].applicable = false;
+  first.validity[1].rows[0] = Row::unknown;
+  const auto shares = [&](const PumpLife& life) {
+    std::map<std::string, double> found;
+    for (const LifeLimit& l : life.limits)
+      if (!l.of_bearing) found[l.key] = l.violated_share;
+    return found;
+  };
+  const double of_bearings = pump_life(the_case, {first, second}).violated_share;
+  EXPECT_EQ(shares(pump_life(the_case, {first, second})),
+            (std::map<std::string, double>{{"film", 0.0}, {"point", 0.0}}));
+  for (Row& row : second.validity[0].rows) row = Row::violated;
+  const PumpLife life = pump_life(the_case, {first, second});
+  EXPECT_NEAR(shares(life).at("film"), 0.6, 1e-12);  // 3/2 of 5/2 of the revolutions
+  EXPECT_EQ(shares(life).at("point"), 0);
+  EXPECT_GE(life.violated_share, 0.6 - 1e-12);
+  EXPECT_GT(life.violated_share, of_bearings);
+  const auto film = std::find_if(life.limits.begin(), life.limits.end(),
+                                 [](const LifeLimit& l) { return l.key == "film"; });
+  ASSERT_NE(film, life.limits.end());
+  EXPECT_EQ(film->limit, "limit film");
+  EXPECT_EQ(film->unit, "mm");
+  EXPECT_EQ(film->worst, 7);
+  EXPECT_EQ(film->theta_deg, 7);
+  EXPECT_EQ(film->point, 1U);
+}
+
+// A pump whose film would have to pull, and the rated one.
+TEST(LifeStudy, SaysWhereTheModelsDoNotHold) {
+  const auto said = [](const std::vector<std::string>& changes) {
+    std::vector<std::string> all = kRatings;
+    all.insert(all.end(), changes.begin(), changes.end());
+    const Case the_case = read_case(kCases + "bap63_rated.toml", all);
+    const designs::LifeStudy life = designs::life_study(the_case, {});
+    const auto limits = analytic::check_validity(
+        the_case, the_case.analytic, sample_case(the_case, PressureTrace(the_case.pressure)),
+        run_turn(prepare(the_case), Model::analytic));
+    std::vector<std::string> violated;
+    for (const LifeLimit& l : life.analytic.life.limits) {
+      if (l.of_bearing) continue;
+      const auto of_turn = std::find_if(limits.begin(), limits.end(),
+                                        [&](const auto& limit) { return limit.key == l.key; });
+      EXPECT_NEAR(l.violated_share, of_turn->violated_share, 1e-12) << l.key;
+      EXPECT_EQ(l.worst, of_turn->worst) << l.key;
+      if (l.violated_share > 0) violated.push_back(l.key);
+    }
+    return violated;
+  };
+  EXPECT_THAT(said({}), testing::IsEmpty());
+  EXPECT_THAT(said({"pressure.delivery_bar=1", "block.spring_force_N=0"}),
+              testing::Contains("film"));
 }
 
 TEST(PumpLife, IsAnOutputOfADesign) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bentaxis/analytic/validity.h"
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
@@ -144,9 +145,13 @@ LifeStudy life_study(const Case& the_case, const DutyCycle& duty,
       family.make(duty.rows[row].values, scratch);
       const study::PreparedCase ready = study::prepare(std::move(scratch));
       const double share = duty.rows[row].share;
+      const Samples samples = ready.samples(study::Way::driven);
       for (const study::Model model : study::kModels) {
         auto& of = model == study::Model::analytic ? result.analytic : result.multibody;
-        of.points[row] = study::life_point(ready.the_case, study::run_turn(ready, model), share);
+        const ResultTable table = study::run(ready, samples, {.model = model}).table;
+        study::LifePoint& point = of.points[row] = study::life_point(ready.the_case, table, share);
+        point.validity =
+            analytic::check_validity(ready.the_case, ready.assumptions(model), samples, table);
       }
     } catch (const InputError& error) {
       if (duty.file.empty()) throw;

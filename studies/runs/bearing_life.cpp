@@ -6,6 +6,7 @@
 
 #include "bentaxis/numerics/bisection.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/ball_bearing.h"
 
@@ -131,34 +132,36 @@ BearingLife life_of(Bearing bearing, const BearingRating& rating,
   return life;
 }
 
-void find_limits(const BearingRatings& b, const std::vector<LifePoint>& points,
-                 const std::vector<double>& revolutions, PumpLife& life) {
-  // At standstill every angle counts alike: there are no revolutions to weigh them by.
-  const bool turns =
-      std::any_of(revolutions.begin(), revolutions.end(), [](double count) { return count > 0; });
-  double all = 0;
-  std::vector<double> weights;  // of every angle of every point
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::size_t angles = points[i].theta_deg.size();
-    const double each = (turns ? revolutions[i] : 1) / static_cast<double>(angles);
-    weights.insert(weights.end(), angles, each);
-  }
-  for (const double weight : weights) all += weight;
-  std::vector<bool> beyond(weights.size(), false);  // any limit
+// Finds in which share of the revolutions limits are violated, each and any of them.
+class LimitFinder {
+ public:
   using OfAngle = std::function<double(const BearingLoads&, std::size_t)>;
+
+  LimitFinder(const std::vector<LifePoint>& points, const std::vector<double>& revolutions,
+              PumpLife& life)
+      : points_(points), life_(life) {
+    // At standstill every angle counts alike: there are no revolutions to weigh them by.
+    const bool turns =
+        std::any_of(revolutions.begin(), revolutions.end(), [](double count) { return count > 0; });
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::size_t angles = points[i].theta_deg.size();
+      const double each = (turns ? revolutions[i] : 1) / static_cast<double>(angles);
+      weights_.insert(weights_.end(), angles, each);
+    }
+    for (const double weight : weights_) all_ += weight;
+    beyond_.assign(weights_.size(), false);
+  }
+
   // Scans what must not be negative at any angle; `shown` is what is said of it.
-  const auto scan = [&](LifeLimit limit, const OfAngle& not_negative, const OfAngle& shown) {
+  void scan(LifeLimit limit, const OfAngle& not_negative, const OfAngle& shown) {
     double violated = 0, smallest = HUGE_VAL;
     std::size_t at = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const LifePoint& p = points[i];
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const LifePoint& p = points_[i];
       const BearingLoads& loads = p.loads[static_cast<std::size_t>(limit.bearing)];
       for (std::size_t k = 0; k < p.theta_deg.size(); ++k, ++at) {
         const double value = not_negative(loads, k);
-        if (value < 0) {
-          violated += weights[at];
-          beyond[at] = true;
-        }
+        if (value < 0) violated += violate(at);
         if (value >= smallest) continue;
         smallest = value;
         limit.worst = shown(loads, k);
@@ -166,24 +169,88 @@ void find_limits(const BearingRatings& b, const std::vector<LifePoint>& points,
         limit.theta_deg = p.theta_deg[k];
       }
     }
-    limit.violated_share = all > 0 ? violated / all : 0;
-    life.limits.push_back(std::move(limit));
-  };
+    add(std::move(limit), violated);
+  }
+
+  // The limits of validity of the turns. Of the thrust the tapered bearing has limits of its own.
+  void add_validity() {
+    std::vector<std::string> keys;
+    for (const LifePoint& p : points_)
+      for (const analytic::ValidityLimit& limit : p.validity)
+        if (limit.applicable && limit.key != "thrust" && !contains(keys, limit.key))
+          keys.push_back(limit.key);
+    for (const std::string& key : keys) add_validity(key);
+  }
+
+  double share_beyond() const {
+    double violated = 0;
+    for (std::size_t at = 0; at < weights_.size(); ++at)
+      if (beyond_[at]) violated += weights_[at];
+    return share(violated);
+  }
+
+ private:
+  double share(double violated) const { return all_ > 0 ? violated / all_ : 0; }
+  double violate(std::size_t at) {
+    beyond_[at] = true;
+    return weights_[at];
+  }
+  void add(LifeLimit limit, double violated) {
+    limit.violated_share = share(violated);
+    life_.limits.push_back(std::move(limit));
+  }
+
+  void add_validity(const std::string& key) {
+    LifeLimit found;
+    found.of_bearing = false;
+    double violated = 0, smallest = HUGE_VAL;
+    std::size_t first = 0;  // row of a point
+    for (std::size_t i = 0; i < points_.size(); first += points_[i++].theta_deg.size())
+      for (const analytic::ValidityLimit& limit : points_[i].validity) {
+        if (limit.key != key || !limit.applicable) continue;
+        for (std::size_t k = 0; k < limit.rows.size(); ++k)
+          if (limit.rows[k] == analytic::ValidityLimit::Row::violated)
+            violated += violate(first + k);
+        if (limit.margin >= smallest) continue;
+        smallest = limit.margin;
+        found.key = limit.key;
+        found.limit = limit.limit;
+        found.consequence = limit.consequence;
+        found.unit = limit.unit;
+        found.worst = limit.worst;
+        found.point = i;
+        found.theta_deg = limit.theta_deg;
+      }
+    add(std::move(found), violated);
+  }
+
+  const std::vector<LifePoint>& points_;
+  PumpLife& life_;
+  std::vector<double> weights_;  // of every angle of every point
+  double all_ = 0;
+  std::vector<bool> beyond_;  // any limit
+};
+
+void find_limits(const BearingRatings& b, const std::vector<LifePoint>& points,
+                 const std::vector<double>& revolutions, PumpLife& life) {
+  using OfAngle = LimitFinder::OfAngle;
+  LimitFinder finder(points, revolutions, life);
   const OfAngle axial = [](const BearingLoads& l, std::size_t k) { return l.axial[k]; };
   const OfAngle load = [](const BearingLoads& l, std::size_t k) { return l.equivalent[k]; };
   const OfAngle load0 = [](const BearingLoads& l, std::size_t k) { return l.equivalent0[k]; };
   // A ball bearing takes thrust both ways unless its contact is angular, which the case does not
   // say.
   if (b.tapered->element == RollingElement::roller)
-    scan({Bearing::tapered, "pulled", "thrust seats the tapered bearing: Rb1_z1 >= 0",
-          "it takes thrust in one direction only; its life is computed from the magnitude and is "
-          "not "
-          "meaningful there"},
-         axial, axial);
+    finder.scan(
+        {Bearing::tapered, "pulled", "thrust seats the tapered bearing: Rb1_z1 >= 0",
+         "it takes thrust in one direction only; its life is computed from the magnitude and is "
+         "not "
+         "meaningful there"},
+        axial, axial);
   const double per_radial = 1 / (2 * b.tapered->axial_factor);
   const bool tapered = b.tapered->element == RollingElement::roller;
   if (tapered)
-    scan(
+    finder.scan(
         {Bearing::tapered, "seated",
          "thrust exceeds the induced thrust of the taper: Fa >= Fr/(2Y)",
          "without an opposed bearing fewer than half of the rollers carry load; P is too small "
@@ -194,7 +261,7 @@ void find_limits(const BearingRatings& b, const std::vector<LifePoint>& points,
     const BearingRating& rating = rating_of(b, bearing);
     const bool balls = rating.element == RollingElement::ball;
     const double smallest = law_of(rating.element).smallest_load;
-    scan(
+    finder.scan(
         {bearing, "smallest",
          balls ? "load enough for the balls to roll: P >= 0.01 C"
                : "load enough for the rollers to roll: P >= 0.02 C",
@@ -204,24 +271,22 @@ void find_limits(const BearingRatings& b, const std::vector<LifePoint>& points,
           return l.equivalent[k] - smallest * rating.dynamic_rating;
         },
         load);
-    scan(
+    finder.scan(
         {bearing, "largest", "load within the range of ISO 281: P <= 0.5 C",
          "the computed rating life is too long there"},
         [&](const BearingLoads& l, std::size_t k) {
           return kLargestLoad * rating.dynamic_rating - l.equivalent[k];
         },
         load);
-    scan(
+    finder.scan(
         {bearing, "static", "no lasting dents: P0 <= C0", "permanent indentations at standstill"},
         [&](const BearingLoads& l, std::size_t k) {
           return rating.static_rating - l.equivalent0[k];
         },
         load0);
   }
-  double violated = 0;
-  for (std::size_t at = 0; at < weights.size(); ++at)
-    if (beyond[at]) violated += weights[at];
-  life.violated_share = all > 0 ? violated / all : 0;
+  finder.add_validity();
+  life.violated_share = finder.share_beyond();
 }
 
 }  // namespace

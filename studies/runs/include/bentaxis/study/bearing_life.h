@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/analytic/validity.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/results/result_table.h"
 
@@ -74,6 +75,8 @@ struct LifePoint {
   double speed_rpm = 0;                 ///< either sign
   std::vector<double> theta_deg;        ///< of the loads, evenly over the turn
   std::array<BearingLoads, 2> loads{};  ///< by Bearing
+  /// Limits of validity of the turn, where they were checked: analytic::check_validity().
+  std::vector<analytic::ValidityLimit> validity{};
 };
 
 /// @throws InputError where the case does not give both ratings
@@ -104,16 +107,19 @@ struct BearingLife {
   double largest_ball_load = not_computed();  ///< N
 };
 
-/// A limit of what a life may be computed for.
+/// A limit of what a life may be computed for: of a bearing, or of the models that find its loads.
 struct LifeLimit {
   Bearing bearing = Bearing::tapered;
-  std::string key;            ///< "pulled", "seated", "smallest", "largest", "static"
+  std::string key;            ///< "pulled", "seated", "smallest", "largest", "static", or that of
+                              ///< an analytic::ValidityLimit
   std::string limit;          ///< what must hold
   std::string consequence;    ///< where it does not
   double violated_share = 0;  ///< of the revolutions
-  double worst = 0;           ///< N
+  double worst = 0;           ///< in `unit`
   std::size_t point = 0;      ///< where that is
   double theta_deg = 0;
+  std::string unit = "N";
+  bool of_bearing = true;  ///< false: of the turn of the pump, whatever the bearing is
 };
 
 struct PumpLife {
