@@ -171,6 +171,8 @@ class RattleTest(ProgramTest):
             ({"speeds": "x"}, "must be a list of numbers with commas (100,200), FROM:TO:STEP, FROM:TO:#N or one number, in rpm, >= 1"),
             ({"delivery": "0,100:200:5"}, "\"100:200:5\" must be a number in bar, >= 0; a range is FROM:TO:STEP or FROM:TO:#N, without a list"),
             ({"delivery": "nan:200:#3"}, "FROM:TO:STEP"),
+            ({"speeds": "1000,1500,1e3"}, "--speeds 1000,1500,1e3: 1000 is specified more than once"),
+            ({"delivery": "100,100"}, "--delivery-bar 100,100: 100 is specified more than once"),
         ):
             with self.subTest(options):
                 option = "--speeds" if "speeds" in options else "--delivery-bar"
@@ -178,6 +180,7 @@ class RattleTest(ProgramTest):
         for option, value in (("--error", "0"), ("--check-points", "-1"), ("--threads", "x")):
             self.assert_mentions(self.refused(*self.command(option, value)), option)
         self.assert_mentions(self.refused(*self.command("--turns", 0)[:2], "--speeds", "1:2:#2"), "--delivery-bar")
+        self.assert_mentions(self.refused(*self.command("--speeds", "1000,1500")), "--speeds is given more than once")
         self.assert_mentions(self.refused(*self.command("--set", "friction.regularization_m_per_s=0")), "regularization_m_per_s")
         rigid = ("rattle", program.REPO / "cases/bap63_rated.toml", "--speeds", "1000:1500:#2", "--delivery-bar", "100:200:#2")
         self.assert_mentions(self.refused(*rigid, "--check-points", 3), "--check-points", "rigid")

@@ -88,8 +88,10 @@ Option add_values(CommandParser command, const std::string& name, std::string& t
             (otherwise.empty() ? "" : " [" + otherwise + "]"));
 }
 
-std::vector<double> values_in(const std::string& name, const std::string& text,
-                              const std::string& unit, double least) {
+namespace {
+
+std::vector<double> numbers_in(const std::string& name, const std::string& text,
+                               const std::string& unit, double least) {
   constexpr int kMost = 1000;
   if (text.find(',') == std::string::npos)
     return study::spaced_values(name, text, unit, least, kMost,
@@ -108,6 +110,18 @@ std::vector<double> values_in(const std::string& name, const std::string& text,
     values.push_back(*value);
     at = end + 1;
   }
+  return values;
+}
+
+}  // namespace
+
+std::vector<double> values_in(const std::string& name, const std::string& text,
+                              const std::string& unit, double least) {
+  const std::vector<double> values = numbers_in(name, text, unit, least);
+  for (auto value = values.begin(); value != values.end(); ++value)
+    if (std::find(values.begin(), value, *value) != value)
+      throw InputError(name + " " + text + ": " + number_text(*value) +
+                       " is specified more than once");
   return values;
 }
 

@@ -39,7 +39,8 @@ void add_out(CommandParser command, std::string& folder, const std::string& what
 /// @param otherwise  what is taken where it is not given
 Option add_values(CommandParser command, const std::string& name, std::string& text,
                   const std::string& what, const std::string& otherwise = {});
-/// The numbers of such a text, each at least `least`. @throws InputError naming the option
+/// The numbers of such a text, each at least `least` and no two alike. @throws InputError naming
+/// the option
 std::vector<double> values_in(const std::string& name, const std::string& text,
                               const std::string& unit, double least);
 /// --threads. @param what  goes on behind its meaning
