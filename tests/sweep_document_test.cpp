@@ -234,10 +234,17 @@ TEST_F(SweepDocument, ChecksAreTold) {
   auto found = document();
   EXPECT_EQ(found.verdict->agrees, true);
   EXPECT_EQ(section(found, "Designs in which the models differ"), nullptr);
+  EXPECT_THAT(found.verdict->headline, HasSubstr("Simbody agrees at 1 of 1 designs; 1 of 2 checked "
+                                                 "designs not compared"));
+  result_.checks = {both};
+  found = document();
+  EXPECT_EQ(found.verdict->agrees, false);
+  EXPECT_EQ(found.verdict->word, "Nothing compared");
+  EXPECT_EQ(section(found, "Designs in which the models differ"), nullptr);
   result_.checks = {good, bad, both};
   found = document();
   EXPECT_EQ(found.verdict->agrees, false);
-  EXPECT_THAT(found.verdict->headline, HasSubstr("Simbody agrees at 2 of 3 designs"));
+  EXPECT_THAT(found.verdict->headline, HasSubstr("Simbody agrees at 1 of 2 designs"));
   const auto* differing = section(found, "Designs in which the models differ");
   ASSERT_NE(differing, nullptr);
   ASSERT_EQ(differing->table.rows.size(), 1U);

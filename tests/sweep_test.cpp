@@ -164,7 +164,7 @@ TEST(SweepParts, KeepsBlocksWholeOrNotAtAll) {
   EXPECT_THAT(found->reasons[0], HasSubstr("tilt_deg"));
   ASSERT_EQ(found->checks.size(), 1U);
   EXPECT_EQ(found->checks[0].reason, block.checks[0].reason);
-  EXPECT_TRUE(found->checks[0].agrees(kCheckTolerance));  // refused by both
+  EXPECT_FALSE(found->checks[0].compared());  // refused by both
 
   const fs::path file = folder.path() / "parts" / "block-000004.bin";
   const std::string whole = content(file);
@@ -362,8 +362,10 @@ TEST(SweepChecks, NoticeADifference) {
   EXPECT_TRUE(check.agrees(1e-9));
   check.reason = "no assembly found";
   EXPECT_FALSE(check.agrees(1e-9));
+  EXPECT_TRUE(check.compared());
   check.own_reason = "refused too";
-  EXPECT_TRUE(check.agrees(1e-9));
+  EXPECT_FALSE(check.agrees(1e-9));
+  EXPECT_FALSE(check.compared());
 
   check.own_reason = check.reason = "";
   EXPECT_TRUE(check.agrees(1e-9));

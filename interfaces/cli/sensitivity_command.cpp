@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "bentaxis/designs/independence.h"
 #include "bentaxis/designs/sensitivity_document.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/lists.h"
@@ -36,6 +37,7 @@ int sensitivity(const SensitivityOptions& options) {
                      [&](const designs::Variable& v) { return v.name() == name; }))
       variables.emplace_back(name, base);
   if (variables.empty()) variables = designs::continuous_variables(base);
+  if (options.check) designs::require_independent(outputs, base, "--check-derivatives");
   ReportFolders folders(options.place);
 
   const designs::Sensitivities found =

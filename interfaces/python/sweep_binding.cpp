@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "bentaxis/designs/sweep_document.h"
 #include "bentaxis/designs/sweep_tables.h"
@@ -90,9 +91,13 @@ void add_sweep(py::module_& module) {
       .def_readonly("scales", &SweepCheck::scales,
                     "Scales that differences are relative to; 0: not compared.")
       .def_property_readonly(
-          "agrees", [](const SweepCheck& self) { return self.agrees(designs::kCheckTolerance); },
-          "Whether all outputs agree within 1e-9 of their scales, or both models refuse the "
-          "design.");
+          "agrees",
+          [](const SweepCheck& self) -> std::optional<bool> {
+            if (!self.compared()) return std::nullopt;
+            return self.agrees(designs::kCheckTolerance);
+          },
+          "Whether all outputs agree within 1e-9 of their scales; None where nothing was compared, "
+          "as where both models refuse the design.");
   py::class_<Sweep, Table, std::shared_ptr<Sweep>>(
       module, "Sweep",
       "A table of designs: parameters that vary, in the units of the case file, and outputs. A "
@@ -105,7 +110,8 @@ void add_sweep(py::module_& module) {
           "Designs that were also computed by the other model.")
       .def_property_readonly(
           "agrees", [](const Sweep& self) { return self.result->agrees(); },
-          "Whether all checked designs agree.")
+          "Whether all designs that both models computed agree, and there are any, where designs "
+          "were to be checked.")
       .def_property_readonly(
           "headline", [](const Sweep& self) { return designs::headline(*self.result); },
           "Summary in one line.")

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "answers_text.h"
+#include "bentaxis/designs/independence.h"
 #include "bentaxis/pump/number.h"
 #include "document_parts.h"
 
@@ -145,18 +146,33 @@ std::string headline(const Sensitivities& s, const std::optional<SensitivityChec
                                 ? fmt::format(" ({} by {})", s.outputs[check->output].name,
                                               s.variables[check->variable].name())
                                 : "";
+  const std::size_t all = s.outputs.size() * s.variables.size();
   if (check->compared == 0 || check->lacking > 0)
     return fmt::format("{} of {} derivatives could be compared; of {} one model alone has a value",
-                       check->compared, s.outputs.size() * s.variables.size(), check->lacking);
+                       check->compared, all, check->lacking);
   return fmt::format(
-      "derivatives {} differences of {}: largest difference {:.2g} of the output's scale per "
+      "{}derivatives {} differences of {}: largest difference {:.2g} of the output's scale per "
       "relative change{}, allowed {:g}",
+      check->compared < all ? fmt::format("{} of {} ", check->compared, all) : "",
       check->agrees() ? "agree with" : "differ from", other_model(*check), check->worst, worst,
       SensitivityCheck::kTolerance);
 }
 
+// Which derivatives were not checked, and why.
+report::Lines not_checked(const Sensitivities& s, const SensitivityCheck& check) {
+  report::Lines lines;
+  for (const std::string& output : not_independent(s.outputs, s.base))
+    lines.emplace_back("not checked", output);
+  if (check.missing > 0)
+    lines.emplace_back(
+        "not compared",
+        fmt::format("{}: one model has none, or its differences are less accurate", check.missing));
+  return lines;
+}
+
 // By how many percent each output changes per percent of a parameter.
-std::vector<std::string> answers_of(const Sensitivities& s) {
+std::vector<std::string> answers_of(const Sensitivities& s,
+                                    const std::optional<SensitivityCheck>& check) {
   constexpr double kSmall = 0.1;  // %/%
   constexpr std::size_t kNamed = 4;
   std::vector<std::string> answers;
@@ -184,6 +200,9 @@ std::vector<std::string> answers_of(const Sensitivities& s) {
                                   : fmt::format("; {} others below {:g} %", small, kSmall)) +
                       ".");
   }
+  if (check)
+    if (const auto shared = not_independent(s.outputs, s.base); !shared.empty())
+      answers.push_back("Not checked by the other model: " + report::joined(shared) + ".");
   return answers;
 }
 
@@ -195,10 +214,7 @@ Section check_section(const Sensitivities& s, const SensitivityCheck& check) {
       "its curve over the turn.",
       {},
       {{"output", "parameter", "derivative", "by the other model", "its error", "difference"}, {}}};
-  if (check.missing > 0)
-    section.facts = {
-        {"not compared", fmt::format("{}: one model has none, or its differences are less accurate",
-                                     check.missing)}};
+  section.facts = not_checked(s, check);
   for (std::size_t o = 0; o < s.outputs.size(); ++o)
     for (std::size_t v = 0; v < s.variables.size(); ++v)
       section.table.rows.push_back({s.outputs[o].name, s.variables[v].name(),
@@ -224,7 +240,7 @@ report::Document sensitivity_document(const Sensitivities& found,
       study::case_document(description, "Sensitivities: " + found.base.name, program);
   document.verdict = report::Verdict{check ? std::optional<bool>(check->agrees()) : std::nullopt,
                                      headline(found, check), check ? "" : "Sensitivities"};
-  document.verdict->answers = answers_of(found);
+  document.verdict->answers = answers_of(found, check);
   if (!found.left_out.empty())
     report::append(document.warnings, report::Warning{"interrupted", left_out_text(found)});
   document.meaning =
@@ -269,7 +285,7 @@ std::string sensitivity_csv(const Sensitivities& found,
 std::string sensitivity_text(const Sensitivities& found,
                              const std::optional<SensitivityCheck>& check) {
   std::string text =
-      report::answers_text(found.base.name, headline(found, check), answers_of(found));
+      report::answers_text(found.base.name, headline(found, check), answers_of(found, check));
   text.pop_back();
   for (std::size_t o = 0; o < found.outputs.size(); ++o) {
     text += fmt::format("\n{} = {:.7g} {}\n{:<34} {:>12} {:>13} {:>12}  {}\n",

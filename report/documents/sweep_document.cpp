@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "bentaxis/designs/independence.h"
 #include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/text.h"
@@ -29,12 +30,6 @@ std::string percent(std::size_t part, std::size_t whole) {
   return whole == 0 ? "0 %"
                     : fmt::format("{:.3g} %",
                                   100 * static_cast<double>(part) / static_cast<double>(whole));
-}
-
-std::size_t agreeing(const SweepResult& result) {
-  return static_cast<std::size_t>(
-      std::count_if(result.checks.begin(), result.checks.end(),
-                    [&](const SweepCheck& check) { return check.agrees(result.tolerance); }));
 }
 
 std::string other_model(const SweepResult& result) {
@@ -234,11 +229,14 @@ Section checks_section(const SweepResult& result) {
   Section section{
       "Recomputed by " + other_model(result),
       "Designs chosen by a hash of their numbers. A difference is over the scale of its output, "
-      "the peak of the curve over the turn. An infeasible design agrees where both models refuse "
-      "it.",
-      {{"agree", fmt::format("{} of {}", agreeing(result), result.checks.size())},
+      "the peak of the curve over the turn. A design that both models refuse is not compared.",
+      {{"agree", fmt::format("{} of {}", result.agreeing(), result.compared())},
+       {"not compared",
+        fmt::format("{} of {}", result.checks.size() - result.compared(), result.checks.size())},
        {"tolerance", fmt::format("{:g} of the scale", result.tolerance)}},
       {{"output", "designs compared", "largest difference over its scale", "of design"}, {}}};
+  for (const std::string& output : not_independent(result.plan.outputs, result.base))
+    section.facts.emplace_back("not checked", output);
   for (std::size_t k = 0; k < result.plan.outputs.size(); ++k) {
     long compared = 0;
     compare::Difference largest;
@@ -266,7 +264,7 @@ Section differing_section(const SweepResult& result) {
     if (++all <= kMaxDiffering) section.table.rows.push_back(std::move(row));
   };
   for (const SweepCheck& check : result.checks) {
-    if (check.agrees(result.tolerance)) continue;
+    if (!check.compared() || check.agrees(result.tolerance)) continue;
     const long design = static_cast<long>(check.design);
     if (check.own_reason.empty() != check.reason.empty()) {
       add({design, "", check.own_reason.empty() ? "feasible" : check.own_reason,
@@ -347,9 +345,14 @@ std::string headline(const SweepResult& result) {
                                  result.plan.varied.size() == 1 ? "" : "s");
   text += result.all_infeasible == 0 ? ", all feasible"
                                      : fmt::format(", {} infeasible", result.all_infeasible);
-  if (!result.checks.empty())
-    text += fmt::format("; {} agrees at {} of {} designs", other_model(result), agreeing(result),
-                        result.checks.size());
+  const std::size_t compared = result.compared(), refused = result.checks.size() - compared;
+  if (compared > 0)
+    text += fmt::format("; {} agrees at {} of {} designs", other_model(result), result.agreeing(),
+                        compared);
+  if (refused > 0)
+    text += fmt::format(
+        "; {} of {} checked designs not compared: both models refuse them or give no value",
+        refused, result.checks.size());
   if (!result.best.empty()) text += "; " + validity_text(result.best, "best");
   return text;
 }
@@ -416,6 +419,9 @@ std::vector<std::string> sweep_answers(const SweepResult& result) {
     answers.push_back(fmt::format(
         "Trade-off: {} designs of {} are not dominated in the {} outputs sought (Pareto front).",
         view.front().size(), view.designs(), view.sought()));
+  if (const auto shared = not_independent(result.plan.outputs, result.base);
+      !result.checks.empty() && !shared.empty())
+    answers.push_back("Not checked by the other model: " + joined(shared) + ".");
   append_limits(answers, result.best, "--output", result.every);
   if (result.every > 1)
     answers.push_back(
@@ -434,6 +440,8 @@ report::Document sweep_document(const SweepResult& result, const report::Lines& 
   if (result.checks.empty()) {
     document.verdict->agrees.reset();
     document.verdict->word = "Sweep";
+  } else if (result.compared() == 0) {
+    document.verdict->word = "Nothing compared";
   }
   document.meaning =
       result.checks.empty()
@@ -452,7 +460,7 @@ report::Document sweep_document(const SweepResult& result, const report::Lines& 
   }
   if (!result.infeasible.empty()) document.runs->push_back(infeasible_section(result, view));
   if (!result.checks.empty()) document.runs->push_back(checks_section(result));
-  if (!result.agrees()) document.runs->push_back(differing_section(result));
+  if (result.agreeing() < result.compared()) document.runs->push_back(differing_section(result));
   if (view.designs() <= kAllRows) {
     document.runs->push_back({"All designs", "", {}, {}});
     put_designs(view, thinned(view.designs(), kAllRows), document.runs->back().table);

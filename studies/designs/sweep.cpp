@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bentaxis/compare/comparison.h"
+#include "bentaxis/designs/independence.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/channels.h"
@@ -64,7 +65,7 @@ std::size_t block_size_of(std::size_t designs, const SweepPlan& plan, const Case
 
 // What the differences of an output are over.
 enum class ScaleKind {
-  none,       // both models share the number, or it counts samples: not compared
+  none,       // not computed independently by both models: not compared
   vector,     // peak over the turn of the vector that the output is of
   own,        // its own magnitude
   percentage  // 100 %
@@ -88,30 +89,15 @@ Output peak_of_group(const Output& of, const Case& base) {
 }
 
 Scale scale_of(const Output& o, const Case& base) {
-  switch (o.source) {
-    case Source::curve:
-      return {ScaleKind::vector, peak_of_group(o, base)};
-    case Source::budget:
-      return {ScaleKind::vector, output("peak:Td", base)};
-    case Source::validity:
-      if (o.share) return {};
-      for (const auto& [item, force] :
-           {std::pair{"film", "Fh"}, {"flank", "Rcs"}, {"turned", "Rcs"}, {"thrust", "Rb1"}})
-        if (o.item == item) return {ScaleKind::vector, output(std::string("peak:") + force, base)};
-      return {ScaleKind::own};
-    case Source::efficiency:
-      return {o.item.starts_with("volumetric") ? ScaleKind::none : ScaleKind::percentage};
-    case Source::life:
-      return {ScaleKind::own};
-    case Source::derived:
-    case Source::hydraulics:
-    case Source::timing:
-    case Source::plausibility:
-    case Source::motion:  // integrated to an error of its own, to which `simulate` holds both
-                          // models
-      break;
-  }
-  return {};
+  if (!why_not_independent(o, base).empty()) return {};
+  if (o.source == Source::curve) return {ScaleKind::vector, peak_of_group(o, base)};
+  if (o.source == Source::budget) return {ScaleKind::vector, output("peak:Td", base)};
+  if (o.source == Source::efficiency) return {ScaleKind::percentage};
+  if (o.source == Source::validity)
+    for (const auto& [item, force] :
+         {std::pair{"film", "Fh"}, {"flank", "Rcs"}, {"turned", "Rcs"}, {"thrust", "Rb1"}})
+      if (o.item == item) return {ScaleKind::vector, output(std::string("peak:") + force, base)};
+  return {ScaleKind::own};
 }
 
 }  // namespace
@@ -126,16 +112,33 @@ double SweepCheck::error(std::size_t output) const {
   return found.comparable == compare::Comparable::nothing ? 0 : found.share();
 }
 
+bool SweepCheck::compared() const {
+  const bool values_compared =
+      std::any_of(scales.begin(), scales.end(), [](double scale) { return scale != 0; });
+  return own_reason.empty() && reason.empty() ? values_compared
+                                              : own_reason.empty() != reason.empty();
+}
+
 bool SweepCheck::agrees(double tolerance) const {
-  if (own_reason.empty() != reason.empty()) return false;
+  if (!compared() || !own_reason.empty() || !reason.empty()) return false;
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!(error(i) <= tolerance)) return false;
   return true;
 }
 
+std::size_t SweepResult::compared() const {
+  return static_cast<std::size_t>(std::count_if(
+      checks.begin(), checks.end(), [](const SweepCheck& check) { return check.compared(); }));
+}
+
+std::size_t SweepResult::agreeing() const {
+  return static_cast<std::size_t>(
+      std::count_if(checks.begin(), checks.end(),
+                    [&](const SweepCheck& check) { return check.agrees(tolerance); }));
+}
+
 bool SweepResult::agrees() const {
-  return std::all_of(checks.begin(), checks.end(),
-                     [&](const SweepCheck& check) { return check.agrees(tolerance); });
+  return checks.empty() || (compared() > 0 && agreeing() == compared());
 }
 
 struct Sweep::Implementation {
@@ -153,10 +156,7 @@ struct Sweep::Implementation {
         evaluator(Family(base, variables_of(plan)), plan.outputs, plan.model),
         block_size(block_size_of(points->size(), plan, base, evaluator.fast())) {
     for (const Output& o : plan.outputs) scales.push_back(scale_of(o, base));
-    if (plan.check_share > 0 && std::all_of(scales.begin(), scales.end(), [](const Scale& scale) {
-          return scale.kind == ScaleKind::none;
-        }))
-      throw InputError("--check: none of the outputs is computed independently by both models");
+    if (plan.check_share > 0) require_independent(plan.outputs, base, "--check");
   }
 
   // At least one of all designs is: the share may be less than one of them.

@@ -50,11 +50,14 @@ std::string checks_csv(const std::vector<SweepCheck>& checks, const SweepPlan& p
   CsvRows csv("design,output,own,other,scale,error,agrees,own_reason,other_reason");
   for (const SweepCheck& c : checks)
     for (std::size_t k = 0; k < plan.outputs.size(); ++k) {
-      const bool compared = c.scales[k] != 0;
-      const bool agrees = c.own_reason.empty() == c.reason.empty() && c.error(k) <= kCheckTolerance;
-      csv.row(c.design, plan.outputs[k].name, c.own[k], c.values[k],
-              compared ? c.scales[k] : not_computed(), compared ? c.error(k) : not_computed(),
-              agrees ? 1 : 0, c.own_reason, c.reason);
+      const bool refused_by_one = c.own_reason.empty() != c.reason.empty();
+      const auto if_compared = [&](double value) {
+        return c.scales[k] != 0 ? value : not_computed();
+      };
+      csv.row(c.design, plan.outputs[k].name, c.own[k], c.values[k], if_compared(c.scales[k]),
+              if_compared(c.error(k)),
+              refused_by_one ? 0 : if_compared(c.error(k) <= kCheckTolerance ? 1 : 0), c.own_reason,
+              c.reason);
     }
   return std::move(csv).text();
 }

@@ -741,7 +741,8 @@ class Sweep(Table):
 
     @property
     def agrees(self) -> bool:
-        """Whether all checked designs agree."""
+        """Whether all designs that both models computed agree, and there are any, where designs were to be
+        checked."""
 
     @property
     def headline(self) -> str:
@@ -775,8 +776,9 @@ class SweepCheck:
         """Scales that differences are relative to; 0: not compared."""
 
     @property
-    def agrees(self) -> bool:
-        """Whether all outputs agree within 1e-9 of their scales, or both models refuse the design."""
+    def agrees(self) -> Optional[bool]:
+        """Whether all outputs agree within 1e-9 of their scales; None where nothing was compared, as where both
+        models refuse the design."""
 
 
 class Table:

@@ -87,19 +87,23 @@ struct SensitivityCheck {
   static constexpr double kTolerance = 1e-7;
 
   Sensitivities other;
-  std::vector<std::vector<double>> differences;  ///< over that scale; by output, then variable
+  /// Over that scale; by output, then variable. Of an output that is not computed independently
+  /// (`why_not_independent`) not computed.
+  std::vector<std::vector<double>> differences;
   double worst = 0;
   std::size_t output = 0, variable = 0;  ///< of the worst
   /// Not compared: neither model has one, one of them refuses the neighbours, or differences are
   /// not as sharp.
   std::size_t missing = 0;
+  std::size_t shared = 0;    ///< not compared: of outputs that are not computed independently
   std::size_t lacking = 0;   ///< one model alone gives no value, or none that is finite
   std::size_t compared = 0;  ///< the others
   bool agrees() const { return compared > 0 && lacking == 0 && worst <= kTolerance; }
 };
 /// Sets derivatives against those of the other model at the same place.
 SensitivityCheck compare_derivatives(const Sensitivities& found, Sensitivities other);
-/// The same derivatives by differences of the other model.
+/// The same derivatives by differences of the other model, of the outputs that it computes
+/// independently.
 SensitivityCheck check(const Sensitivities& found,
                        const study::PartProgress& progress_of = study::silent());
 

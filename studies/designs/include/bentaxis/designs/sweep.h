@@ -78,15 +78,18 @@ struct SweepCheck {
   std::vector<double> values;  ///< one per output; not_computed() where it gives none
   std::string own_reason;      ///< why the plan's model has none
   std::string reason;          ///< why the other model has none
-  /// Of each output: what differences are over; 0: not compared, as both models share it or neither
-  /// has a value.
+  /// Of each output: what differences are over; 0: not compared, as both models share it
+  /// (`why_not_independent`) or neither has a value.
   std::vector<double> scales;
 
   /// What the models differ by in an output; Comparable::nothing where it is not compared.
   compare::Difference difference(std::size_t output) const;
   /// The same over its scale: 0 where it is not compared, NaN where one model has no value.
   double error(std::size_t output) const;
-  /// Both refuse the design, or all outputs are within the tolerance. A value that one model alone
+  /// Whether the models were compared: not where both refuse the design, or have no output that
+  /// each of them computes independently.
+  bool compared() const;
+  /// They were compared, and all outputs are within the tolerance. A value that one model alone
   /// lacks is no agreement.
   bool agrees(double tolerance) const;
 };
@@ -143,6 +146,10 @@ struct SweepResult {
   double tolerance = kCheckTolerance;
   double seconds = 0;
   std::vector<DesignValidity> best = {};  ///< of the best designs: validity_of_best()
+
+  std::size_t compared() const;  ///< number of checks that compared the models
+  std::size_t agreeing() const;  ///< of these
+  /// Whether all that were compared agree, and any were, where designs were to be checked.
   bool agrees() const;
 };
 
