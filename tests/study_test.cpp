@@ -133,12 +133,24 @@ TEST(Regression, TheWorstIsThatFurthestBeyondOrNearestToItsLimit) {
       study::held_text(outcome),
       "1 of 2 reactions compared differ. Worst: Rb1 differs: 7 % of peak (70 N), 1 % allowed; "
       "Rb1_y1_N at 0 deg and 2 more (analytic).");
-  // What lacks values is worse than any number.
+  // What lacks values is not one that differs.
   outcome.lines[3].channels[0].finding = compare::Finding::incomplete;
   outcome.lines[3].channels[0].hint = "no value at 3 deg";
   outcome.lines[3].failed = 1;
+  outcome.lines[3].compared = 0;
+  EXPECT_EQ(
+      study::held_text(outcome),
+      "1 of 2 reactions compared differ. Worst: Rb1 differs: 7 % of peak (70 N), 1 % allowed; "
+      "Rb1_y1_N at 0 deg and 2 more (analytic). Not compared: Td_x1_N (no value at 3 deg).");
+  outcome.state = study::Outcome::State::differs;
+  EXPECT_TRUE(outcome.differs());
+  EXPECT_THAT(study::summary({outcome}), testing::HasSubstr("0 agree, 1 differ; 3 groups"));
+  outcome.lines[0] = line_of("analytic", "Rb1", {0.2});
+  outcome.lines[1] = line_of("multibody", "Rb1", {0.1});
+  EXPECT_FALSE(outcome.differs());
   EXPECT_THAT(study::held_text(outcome),
-              testing::StartsWith("2 of 2 reactions compared differ. Worst: Td incomplete"));
+              testing::StartsWith("2 of 2 reactions compared agree. Worst: Td agrees"));
+  EXPECT_THAT(study::summary({outcome}), testing::HasSubstr("0 agree, 0 differ, 1 incomplete"));
 }
 
 // Smallest and largest magnitude of a vector of piston 1 over the turn, and its mean.

@@ -168,6 +168,12 @@ const ReferenceChannel* GroupLine::worst() const {
   return it == channels.end() || severity(*it) < 0 ? nullptr : &*it;
 }
 
+bool GroupLine::differs() const {
+  return std::any_of(channels.begin(), channels.end(), [](const ReferenceChannel& channel) {
+    return channel.finding == Finding::differs;
+  });
+}
+
 std::string GroupLine::verdict() const {
   return failed > 0 ? to_string(worst()->finding) : is_missing() ? "missing" : "agrees";
 }
@@ -272,6 +278,12 @@ Outcome hold_results(const std::filesystem::path& folder, const CaseOf& case_of,
   return outcome;
 }
 
+bool Outcome::differs() const {
+  return state == State::differs &&
+         std::any_of(lines.begin(), lines.end(),
+                     [](const GroupLine& line) { return line.differs(); });
+}
+
 const ReferenceChannel* Outcome::find(const std::string& model, const std::string& channel) const {
   for (const GroupLine& line : lines)
     for (const ReferenceChannel& entry : line.channels)
@@ -298,21 +310,50 @@ std::string line_text(const GroupLine& line) {
                      100 * (c.peak > 0 ? c.allowed / c.peak : 0), line.text(), line.model);
 }
 
+namespace {
+
+// "Td_z1_Nm (the reference does not have it)": what could not be compared, and why.
+std::string not_compared_text(const Outcome& outcome) {
+  constexpr std::size_t kMostNamed = 6;
+  std::vector<std::string> reasons;
+  std::map<std::string, std::vector<std::string>> channels;  // by reason
+  for (const GroupLine& line : outcome.lines)
+    for (const ReferenceChannel& channel : line.channels) {
+      if (channel.finding != Finding::incomplete) continue;
+      add_once(reasons, channel.hint);
+      add_once(channels[channel.hint], channel.comparison.channel.name);
+    }
+  return joined(reasons, "; ", [&](const std::string& reason) {
+    std::vector<std::string> names = channels[reason];
+    const std::size_t more = names.size() > kMostNamed ? names.size() - kMostNamed : 0;
+    names.resize(names.size() - more);
+    return joined(names) + (more > 0 ? fmt::format(" and {} more", more) : "") + " (" + reason +
+           ")";
+  });
+}
+
+}  // namespace
+
 std::string held_text(const Outcome& outcome) {
   if (!outcome.error.empty()) return outcome.error;
   std::vector<std::string> groups, differing;
   const GroupLine* worst = nullptr;
   for (const GroupLine& line : outcome.lines) {
-    if (line.is_missing()) continue;
+    if (line.compared == 0) continue;
     add_once(groups, line.group);
-    if (line.failed > 0) add_once(differing, line.group);
-    if (worst == nullptr || severity(*line.worst()) > severity(*worst->worst())) worst = &line;
+    if (line.differs()) add_once(differing, line.group);
+    if (line.worst()->finding != Finding::incomplete &&
+        (worst == nullptr || severity(*line.worst()) > severity(*worst->worst())))
+      worst = &line;
   }
-  const std::string count =
+  std::string text =
       differing.empty()
-          ? fmt::format("{0} of {0} reactions compared agree", groups.size())
-          : fmt::format("{} of {} reactions compared differ", differing.size(), groups.size());
-  return fmt::format("{}. Worst: {}.", count, line_text(*worst));
+          ? fmt::format("{0} of {0} reactions compared agree.", groups.size())
+          : fmt::format("{} of {} reactions compared differ.", differing.size(), groups.size());
+  if (worst != nullptr) text += " Worst: " + line_text(*worst) + ".";
+  if (const std::string rest = not_compared_text(outcome); !rest.empty())
+    text += " Not compared: " + rest + ".";
+  return text;
 }
 
 std::vector<const GroupLine*> sorted_lines(const std::vector<Outcome>& outcomes) {
@@ -373,24 +414,27 @@ std::string regression_text(const std::vector<Outcome>& outcomes) {
 }
 
 std::string summary(const std::vector<Outcome>& outcomes) {
-  int agree = 0, differ = 0, unusable = 0, failed = 0, published = 0;
+  int agree = 0, differ = 0, incomplete = 0, unusable = 0, failed = 0, published = 0;
   std::size_t groups = 0;
   for (const auto& outcome : outcomes) {
-    groups += static_cast<std::size_t>(
-        std::count_if(outcome.lines.begin(), outcome.lines.end(),
-                      [](const auto& line) { return !line.is_missing(); }));
+    groups +=
+        static_cast<std::size_t>(std::count_if(outcome.lines.begin(), outcome.lines.end(),
+                                               [](const auto& line) { return line.compared > 0; }));
     if (outcome.state == Outcome::State::unusable)
       ++unusable;
     else if (outcome.state == Outcome::State::failed)
       ++failed;
-    else if (outcome.state == Outcome::State::differs)
+    else if (outcome.differs())
       ++differ;
+    else if (outcome.state == Outcome::State::differs)
+      ++incomplete;
     else if (outcome.kind == "published")
       ++published;
     else
       ++agree;
   }
   std::string text = fmt::format("{} agree, {} differ", agree, differ);
+  if (incomplete > 0) text += fmt::format(", {} incomplete", incomplete);
   if (unusable > 0) text += fmt::format(", {} cannot be used", unusable);
   if (failed > 0) text += fmt::format(", {} could not be computed", failed);
   text += fmt::format("; {} groups of channels compared", groups);

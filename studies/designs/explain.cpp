@@ -393,14 +393,10 @@ class Search {
 template <class CaseOf>
 void explain_by(study::Outcome& outcome, const study::PartProgress& progress_of,
                 const CaseOf& case_of) {
-  const bool analytic_differs =
-      std::any_of(outcome.lines.begin(), outcome.lines.end(), [](const study::GroupLine& line) {
-        return line.model == "analytic" &&
-               std::any_of(line.channels.begin(), line.channels.end(), [](const auto& channel) {
-                 return channel.finding == compare::Finding::differs;
-               });
-      });
-  if (outcome.state != study::Outcome::State::differs || outcome.held.empty()) return;
+  const bool analytic_differs = std::any_of(
+      outcome.lines.begin(), outcome.lines.end(),
+      [](const study::GroupLine& line) { return line.model == "analytic" && line.differs(); });
+  if (!outcome.differs() || outcome.held.empty()) return;
   Explanation found;
   try {
     if (analytic_differs)

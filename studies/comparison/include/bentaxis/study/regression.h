@@ -25,13 +25,16 @@ struct GroupLine {
   /// The channel with the largest difference over its tolerance; nullptr where nothing was
   /// compared.
   const compare::ReferenceChannel* worst() const;
+  bool differs() const;  ///< a channel that was compared does
   bool is_missing() const { return compared == 0 && failed == 0; }
   std::string verdict() const;
   /// Where it is worst and what that looks like; "" where nothing was compared.
   std::string text() const;
 };
 
-/// What one reference came to. The states are in the order of their gravity.
+/// What one reference came to. The states are in the order of their gravity. One that lacks a curve
+/// which it must have, or has gaps, does not agree: its state is `differs`, and differs() is false
+/// where all that was compared agrees.
 struct Outcome {
   enum class State { agrees, differs, unusable, failed };
   std::string name, kind;
@@ -52,6 +55,7 @@ struct Outcome {
   /// Of one that differs, where it was looked for (designs/explain.h).
   std::optional<Explanation> explanation = {};
 
+  bool differs() const;  ///< a curve does
   /// What was found of a channel of a model; nullptr where it was not compared.
   const compare::ReferenceChannel* find(const std::string& model, const std::string& channel) const;
   /// The line of a group with the largest difference over its tolerance; nullptr where nothing was
