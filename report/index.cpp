@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "bentaxis/pump/number.h"
 #include "bentaxis/report/page.h"
 #include "bentaxis/report/picture.h"
 
@@ -95,6 +96,19 @@ std::string row_of(const IndexEntry& entry) {
       markup_of(entry.command), image(entry.picture));
 }
 
+// "over 7.5 % of the turn", also of two pumps: the largest share, %. 0 where none is stated.
+double share_not_valid(const IndexEntry& entry) {
+  const std::string before = "over ";
+  double largest = 0;
+  for (auto at = entry.not_valid.find(before); at != std::string::npos;
+       at = entry.not_valid.find(before, at + 1))
+    if (const auto end = entry.not_valid.find(" %", at); end != std::string::npos) {
+      const auto from = at + before.size();
+      largest = std::max(largest, number_in(entry.not_valid.substr(from, end - from)).value_or(0));
+    }
+  return largest;
+}
+
 constexpr const char* kDiffers = "differs";
 
 // "2 differ, 1 no design": what is wrong by the word of its page.
@@ -113,20 +127,21 @@ std::string wrong_counts(const std::vector<IndexEntry>& entries) {
   return text;
 }
 
+// How many rows of the table say what: each report has one verdict, and may have remarks.
 std::string counts_of(const std::vector<IndexEntry>& entries) {
-  const auto count = [&](const char* tone) {
-    return std::count_if(entries.begin(), entries.end(),
-                         [&](const IndexEntry& e) { return tone_of(e) == std::string_view(tone); });
+  const auto counted = [&](const char* before, const char* words, const auto& is) {
+    const auto n = std::count_if(entries.begin(), entries.end(), is);
+    return n > 0 ? fmt::format("{}{} {}", before, n, words) : std::string();
   };
   std::string text = fmt::format("{} report{}", entries.size(), entries.size() == 1 ? "" : "s");
   text += wrong_counts(entries);
-  for (const auto& [tone, words] :
-       {std::pair{"warn", "with warnings"}, {"good", "agree"}, {"neutral", "without a verdict"}})
-    if (const auto n = count(tone); n > 0) text += fmt::format(", {} {}", n, words);
-  const auto invalid = std::count_if(entries.begin(), entries.end(),
-                                     [](const IndexEntry& e) { return !e.not_valid.empty(); });
-  if (invalid > 0) text += fmt::format("; {} of them not valid throughout", invalid);
-  return text;
+  text += counted(", ", "agree", [](const IndexEntry& e) { return e.agrees.value_or(false); });
+  text += counted(", ", "without a verdict", [](const IndexEntry& e) { return !e.agrees; });
+  const std::string warned =
+      counted("; ", "with warnings", [](const IndexEntry& e) { return !e.warnings.empty(); });
+  return text + warned +
+         counted(warned.empty() ? "; " : ", ", "not valid throughout",
+                 [](const IndexEntry& e) { return !e.not_valid.empty(); });
 }
 
 constexpr std::size_t kMostNamed = 3;  // in a headline
@@ -206,9 +221,6 @@ std::optional<IndexEntry> index_entry(const std::string& json_text) {
       entry.warnings.push_back(name.empty() ? text_in(warning, "code") : name);
     }
   entry.not_valid = text_in(verdict, "not_valid");
-  // Where there is a warning, it says so too.
-  if (!entry.not_valid.empty() && entry.warnings.empty())
-    entry.warnings.push_back("not valid " + entry.not_valid);
   entry.word = text_in(verdict, "word");
   const Json& reference = member(verdict, "reference");
   if (const Json& held = member(reference, "agrees");
@@ -258,8 +270,10 @@ void sort_by_worst(std::vector<IndexEntry>& entries) {
   };
   std::stable_sort(entries.begin(), entries.end(), [&](const IndexEntry& a, const IndexEntry& b) {
     if (rank(a) != rank(b)) return rank(a) < rank(b);
-    const double first = a.worst_over_peak.value_or(-1), second = b.worst_over_peak.value_or(-1);
-    if (first != second) return first > second;
+    const auto size = [&](const IndexEntry& e) {
+      return std::pair(rank(e) == 1 ? share_not_valid(e) : 0, e.worst_over_peak.value_or(-1));
+    };
+    if (size(a) != size(b)) return size(a) > size(b);
     return a.json < b.json;
   });
 }

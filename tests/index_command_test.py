@@ -190,11 +190,28 @@ class Index(unittest.TestCase):
             invalid=self.report({"agrees": True, "headline": "fine", "not_valid": "over 100 % of the turn"}, warnings=[{"name": "film", "text": ""}]))
         done = run("index", place)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, r"^2 reports, 2 with warnings; 1 of them not valid throughout\. None differs; first that is not valid "
+        self.assertRegex(done.stdout, r"^2 reports, 2 agree; 2 with warnings, 1 not valid throughout\. None differs; first that is not valid "
                          r"throughout: a pump \(invalid/report\.json\): not valid over 100 % of the turn\.\n")
         self.assertRegex(done.stdout, r"\nagrees +invalid/report\.json: fine; not valid over 100 % of the turn \(warnings: 1\)\n")
         self.assertEqual([word for _, word in Page((place / "index.html").read_text()).rows], ["Agrees; not valid over 100 % of the turn", "Agrees"])
         self.assertEqual([entry["not_valid"] for entry in json.loads((place / "index.json").read_text())["reports"]], ["over 100 % of the turn", ""])
+
+    def test_counts_are_those_of_the_rows_and_most_of_the_turn_comes_first(self):
+        fine = {"agrees": True, "headline": "fine", "worst": {"channel": "Td", "max_over_peak": 1e-13, "theta_deg": 0}}
+        worse = {**fine, "worst": {"channel": "Td", "max_over_peak": 1e-12, "theta_deg": 0}}
+        warned = {"warnings": [{"name": "timing", "text": ""}]}
+        place = self.folder_of(
+            some=self.report({**worse, "not_valid": "over 7.5 % of the turn"}), most=self.report({**fine, "not_valid": "over 40 % of the turn"}),
+            warned=self.report(fine, **warned), differs=self.report({"agrees": False, "headline": "no"}, **warned), fine=self.report(fine),
+            shown=self.report({"agrees": None, "headline": "alone"}))
+        done = run("index", place)
+        lines = done.stdout.splitlines()
+        self.assertRegex(lines[0], r"^6 reports, 1 differ, 4 agree, 1 without a verdict; 2 with warnings, 2 not valid throughout\. Worst: ")
+        rows = [line for line in lines if "/report.json: " in line]
+        self.assertEqual([row.split()[1].split("/")[0] for row in rows], ["differs", "most", "some", "warned", "fine", "shown"])
+        # Each number of the headline is that of the rows.
+        for number, words in ((4, "agrees "), (2, "(warnings: 1)"), (2, "; not valid over")):
+            self.assertEqual(sum(words in row for row in rows), number, words)
 
     def test_no_design_is_no_difference(self):
         place = self.folder_of(none=self.report({"agrees": False, "word": "No design", "headline": "none satisfies all constraints"}),
