@@ -190,6 +190,33 @@ class SaidTest(unittest.TestCase):
                                  "pump: 63.71 cm3/rev: 95.56 l/min at 1500 rpm, 278.8 Nm at 275 bar (ideal); "
                                  "mean piston speed 1.6 m/s")
 
+    def test_a_block_that_nothing_presses_has_no_balance(self):
+        for delivery in (-10, -50, -200):
+            warnings = dict(WARNING.findall(run("show", self.rated, "--set", f"pressure.delivery_bar={delivery}").stderr))
+            for code in ("block-lifts-off", "film-force-outside"):
+                self.assertIn("is not defined, as bottom areas and spring do not press (-", warnings[code])
+                self.assertNotIn("inf", warnings[code])
+        # Where they press it is defined.
+        warnings = dict(WARNING.findall(run("show", self.rated, "--set", "block.bottom_area_mm2=200").stderr))
+        self.assertRegex(warnings["film-force-outside"], r"block balance is 0\.\d+$")
+
+    def test_zero_has_no_sign(self):
+        done = run("show", self.rated, "--set", "pump.tilt_deg=0", "--set", "pressure.delivery_bar=-5")
+        self.assertIn(", 0 Nm at -5 bar", done.stderr)
+        self.assertRegex(done.stdout, r"ideal torque +0 Nm\n")
+
+    def test_warnings_of_a_report_are_of_the_pressure_that_its_limits_are_of(self):
+        done = run("compare", REPO / "cases/bap63_rated_hydraulic.toml", "--set", "operation.samples_per_revolution=72", "--set",
+                   "block.bottom_area_mm2=120", "--out", "out", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        # Before the oil is solved there is an ideal trace, and the warning says so.
+        self.assertRegex(dict(WARNING.findall(done.stderr))["block-lifts-off"], "^with an ideal pressure trace ")
+        report = json.loads((self.folder / "out/report.json").read_text())
+        (text,) = [w["text"] for w in report["plausibility"]["warnings"] if w["code"] == "block-lifts-off"]
+        (limit,) = [row for row in report["validity"] if row["limit"].startswith("film force pushes the block off the port plate")]
+        self.assertTrue(text.startswith(f"the block lifts off its plate in {limit['share_percent']:.3g} % of the turn, worst {limit['worst']:.4g} N "
+                                        f"at {limit['theta_deg']:.4g} deg"), (text, limit))
+
     def test_strict_ends_with_status_2_and_writes_nothing(self):
         doubtful = ["--set", "gear.pressure_angle_deg=0.349", "--set", "piston.mass_kg=0.9", "--strict"]
         for command in (["run", self.rated, "--model", "analytic"], ["compare", self.rated], ["show", self.rated, "--out", "a.svg"],

@@ -50,7 +50,8 @@ double rounded(double value, int digits) {
 
 std::string rounded_text(double value, int digits) {
   std::array<char, 32> text;
-  const auto result = std::to_chars(text.data(), text.data() + text.size(), value,
+  const auto result = std::to_chars(text.data(), text.data() + text.size(),
+                                    value == 0 ? 0.0 : value,  // no "-0"
                                     std::chars_format::general, digits);
   return {text.data(), result.ptr};
 }

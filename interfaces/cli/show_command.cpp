@@ -50,7 +50,8 @@ int show(const ShowOptions& options) {
     for (const std::string& answer : pump->answers()) std::printf("%s\n", answer.c_str());
     std::printf("\n");
   }
-  for (const auto& quantity : study::derived_section(the_case))
+  // Where the load sets the delivery pressure, that is known once it has been computed.
+  for (const auto& quantity : study::derived_section(pump ? pump->ready.the_case : the_case))
     std::printf("  %-22s %10.5g %s\n", quantity.name.c_str(), quantity.value,
                 quantity.unit.c_str());
   if (!pump) {

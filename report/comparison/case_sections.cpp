@@ -7,6 +7,7 @@
 
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/study/plausibility.h"
 
 namespace bentaxis::study {
 
@@ -206,7 +207,6 @@ std::vector<report::DerivedQuantity> derived_section(const Case& the_case) {
   const Geometry& g = the_case.pump.geometry;
   const Gear& gear = the_case.pump.gear;
   const analytic::DerivedQuantities derived = analytic::derived_quantities(the_case.pump);
-  const double pressure = the_case.pressure.ports.delivery - the_case.pressure.ports.suction;
   const TransferKind kind = the_case.pump.transfer.kind;
   const bool own_strokes = the_case.pump.transfer.is_uneven_joint();
   const char* const tilt = kind == TransferKind::pistons
@@ -223,7 +223,7 @@ std::vector<report::DerivedQuantity> derived_section(const Case& the_case) {
       {"largest piston tilt", "", derived.largest_tilt / kRadPerDegree, "deg", tilt},
       {"ideal flow", "", derived.displacement * std::abs(the_case.operation.speed_rpm) * 1e3,
        "l/min", "V n"},
-      {"ideal torque", "", derived.displacement * pressure / (2 * kPi), "Nm",
+      {"ideal torque", "", ideal_torque(derived.displacement, the_case.pressure.ports), "Nm",
        "V (delivery - suction) / 2 pi"}};
   if (kind == TransferKind::gear) {
     rows.push_back({"gear torque arm", "(d/2) cos ap",

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "bentaxis/pump/fixed_text.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/failed_points.h"
@@ -16,7 +17,7 @@ constexpr double kCubicCentimetre = 1e-6;  // m3
 constexpr double kRpm = 1.0 / 60;          // rev/s
 
 std::string bias_text(const DerivedDisplacement& derived) {
-  return fmt::format("{:+.2f} %", 100 * derived.bias);
+  return fixed_text(100 * derived.bias, 2, true) + " %";
 }
 
 std::string place_of(const FlowPoint& point) {
@@ -65,11 +66,12 @@ report::Section methods_section(const DisplacementStudy& study) {
       rows.push_back({name_of(derived.method), meter.meter});
       if (is_computed(derived.volume)) {
         const FlowPoint& highest = meter.points[derived.highest];
-        report::append(rows.back(), std::vector<report::Cell>{
-                                        derived.volume / kCubicCentimetre, 100 * derived.bias,
-                                        static_cast<long>(derived.above_one),
-                                        percent(derived.efficiency[derived.highest]),
-                                        speed_rpm(highest), delivery_bar(highest)});
+        report::append(rows.back(),
+                       std::vector<report::Cell>{derived.volume / kCubicCentimetre,
+                                                 fixed_text(100 * derived.bias, 3, true),
+                                                 static_cast<long>(derived.above_one),
+                                                 percent(derived.efficiency[derived.highest]),
+                                                 speed_rpm(highest), delivery_bar(highest)});
       } else {
         section.facts.emplace_back(std::string(name_of(derived.method)) + ", " + meter.meter,
                                    "not determined: " + derived.reason);
@@ -192,13 +194,14 @@ std::string displacement_text(const DisplacementStudy& study) {
                   "displacement, cm3", "bias, %", "points above 100 %", "highest efficiency, %");
   for (const MeteredDisplacement& meter : study.meters)
     for (const DerivedDisplacement& derived : meter.derived)
-      text += is_computed(derived.volume)
-                  ? fmt::format("{:<20} {:<22} {:>17.6g} {:>+8.3f} {:>18} {:>21.2f}\n",
-                                name_of(derived.method), meter.meter,
-                                derived.volume / kCubicCentimetre, 100 * derived.bias,
-                                derived.above_one, 100 * derived.efficiency[derived.highest])
-                  : fmt::format("{:<20} {:<22} not determined: {}\n", name_of(derived.method),
-                                meter.meter, derived.reason);
+      text +=
+          is_computed(derived.volume)
+              ? fmt::format("{:<20} {:<22} {:>17.6g} {:>8} {:>18} {:>21.2f}\n",
+                            name_of(derived.method), meter.meter, derived.volume / kCubicCentimetre,
+                            fixed_text(100 * derived.bias, 3, true), derived.above_one,
+                            100 * derived.efficiency[derived.highest])
+              : fmt::format("{:<20} {:<22} not determined: {}\n", name_of(derived.method),
+                            meter.meter, derived.reason);
   return text;
 }
 

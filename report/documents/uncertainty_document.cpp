@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "bentaxis/pump/fixed_text.h"
 #include "bentaxis/pump/number.h"
 #include "document_parts.h"
 
@@ -178,11 +179,7 @@ Section contributions_section(const UncertaintyResult& result) {
   return section;
 }
 
-// To three decimals, without a sign before 0.
-std::string share_text(double share) {
-  const std::string text = fmt::format("{:.3f}", share);
-  return text == "-0.000" ? "0.000" : text;
-}
+std::string share_text(double share) { return fixed_text(share, 3); }
 std::string share_text(const Estimate& e) {
   return share_text(e.value) + " (" + share_text(e.low) + " .. " + share_text(e.high) + ")";
 }

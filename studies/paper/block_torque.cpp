@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bentaxis/pump/fixed_text.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::study {
@@ -126,8 +127,9 @@ std::string block_torque_text(const std::vector<BlockTorque>& rows) {
   for (const BlockTorque& row : rows) {
     if (row.group != group) text += "\n";
     group = row.group;
-    text += fmt::format("{:<62}{:>10.4f}{:>11.4f}{:>9.3f}{:>7.1f}%\n", row.what, row.analytic,
-                        row.multibody, row.change, 100 * row.share());
+    text += fmt::format("{:<62}{:>10}{:>11}{:>9}{:>7}%\n", row.what, fixed_text(row.analytic, 4),
+                        fixed_text(row.multibody, 4), fixed_text(row.change, 3),
+                        fixed_text(100 * row.share(), 1));
   }
   return text;
 }

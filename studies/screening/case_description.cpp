@@ -16,11 +16,6 @@ constexpr int kMaxSamples = 120;  // of the turn
 // A path of at least so many points per turn is a curve to the eye, however few rows a run has.
 constexpr int kPathPerTurn = 1440, kPathPerPitch = 60;
 
-// Of a study of other cases the pressure of this one may not have been computed.
-bool lacks_pressure(const PressureSpec& given) {
-  return given.kind == PressureKind::hydraulic && !given.computed && given.curve.theta_deg.empty();
-}
-
 CaseDescription::Turn turn_of(Case turn) {
   turn.operation.samples_per_revolution =
       std::min(turn.operation.samples_per_revolution, kMaxSamples);
@@ -47,6 +42,7 @@ CaseDescription describe(const Case& the_case, const PartProgress& progress_of, 
     return reason.empty();
   };
   Case ready = the_case;
+  // Of a study of other cases the pressure of this one may not have been computed.
   if (lacks_pressure(ready.pressure) && !attempt("the chamber pressure of the pump in space", [&] {
         ready = prepare(the_case, progress_of).the_case;
       }))

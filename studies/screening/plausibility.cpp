@@ -130,7 +130,7 @@ std::optional<Turn> turn_of(const Facts& f) {
   Case c = f.the_case;
   c.operation.revolutions = 1;
   Turn turn;
-  turn.ideal_pressure = c.pressure.kind == PressureKind::hydraulic;
+  turn.ideal_pressure = lacks_pressure(c.pressure);
   if (turn.ideal_pressure) {
     c.pressure.kind = PressureKind::ideal;
     c.pressure.transition_deg = kIdealTransition;
@@ -428,8 +428,17 @@ const analytic::ValidityLimit* violated(const Facts& f, const char* name, double
   return limit == nullptr || limit->violated_share <= share ? nullptr : limit;
 }
 
+// Push of the lands over bottom areas and spring; not computed where these do not press.
 double block_balance(const Turn& turn) {
-  return turn.press_force > 0 ? turn.land_force / turn.press_force : HUGE_VAL;
+  return turn.press_force > 0 ? turn.land_force / turn.press_force : not_computed();
+}
+
+std::string block_balance_text(const Turn& turn) {
+  const double balance = block_balance(turn);
+  return is_computed(balance)
+             ? fmt::format("{:.3g}", balance)
+             : fmt::format("not defined, as bottom areas and spring do not press ({:.4g} N)",
+                           turn.press_force);
 }
 
 // ---- Checks, in the order of the case file
@@ -1180,10 +1189,8 @@ const Check kChecks[] = {
            "block balance (push of the lands over bottom areas and spring) is {} (lands {:.4g} "
            "N, bottom_area_mm2 = {:.6g} and spring_force_N = {:.6g} make {:.4g} N)",
            by_ideal_pressure(f), 100 * limit->violated_share, limit->worst, limit->theta_deg,
-           f.turn->press_force > 0 ? fmt::format("{:.3g}", block_balance(*f.turn))
-                                   : std::string("none, as nothing presses"),
-           f.turn->land_force, mm2(f.pump.block.bottom_area), f.pump.block.spring_force,
-           f.turn->press_force);
+           block_balance_text(*f.turn), f.turn->land_force, mm2(f.pump.block.bottom_area),
+           f.pump.block.spring_force, f.turn->press_force);
      }},
     {"block-overpressed",
      "block balance below 0.3 at more than 100 bar: the film would have to carry the rest",
@@ -1206,9 +1213,9 @@ const Check kChecks[] = {
        return fmt::format(
            "{}the film force acts outside of the plate (r4 = {:.4g} mm) in {:.3g} % of the turn, "
            "up "
-           "to {:.4g} mm from its axis at {:.4g} deg: the block tips; block balance is {:.3g}",
+           "to {:.4g} mm from its axis at {:.4g} deg: the block tips; block balance is {}",
            by_ideal_pressure(f), mm(f.pump.port_plate->r4), 100 * limit->violated_share,
-           limit->worst, limit->theta_deg, block_balance(*f.turn));
+           limit->worst, limit->theta_deg, block_balance_text(*f.turn));
      }},
     {"tooth-force-flank",
      "one flank, and Rcs < 0 in more than 5 % of the turn, but at standstill: the other flank "
@@ -1376,8 +1383,7 @@ Plausibility plausibility(const Case& the_case) {
   result.speed_rpm = the_case.operation.speed_rpm;
   result.ideal_flow = result.displacement * facts.speed / 60;
   result.delivery = facts.ports.delivery;
-  result.ideal_torque =
-      result.displacement * (facts.ports.delivery - facts.ports.suction) / (2 * kPi);
+  result.ideal_torque = ideal_torque(result.displacement, facts.ports);
   result.mean_piston_speed = facts.piston_speed;
   for (const Check& check : kChecks) {
     const std::string text = check.found(facts);
@@ -1391,6 +1397,16 @@ Plausibility plausibility(const Case& the_case) {
       result.meant.push_back({check.code, text, reason->reason});
   }
   return result;
+}
+
+double ideal_torque(double displacement, const PortPressures& ports) {
+  const double torque = displacement * (ports.delivery - ports.suction) / (2 * kPi);
+  return torque == 0 ? 0 : torque;
+}
+
+bool lacks_pressure(const PressureSpec& pressure) {
+  return pressure.kind == PressureKind::hydraulic && !pressure.computed &&
+         pressure.curve.theta_deg.empty();
 }
 
 std::string stated_reason(const Case& the_case, const std::string& code) {

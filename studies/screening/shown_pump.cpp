@@ -2,23 +2,30 @@
 
 #include <utility>
 
+#include "bentaxis/pump/lists.h"
 #include "bentaxis/study/timing.h"
 #include "bentaxis/study/transfer_summary.h"
 #include "bentaxis/study/turn_summary.h"
 
 namespace bentaxis::study {
 
-std::vector<std::string> ShownPump::answers() const {
-  std::vector<std::string> sentences = TurnSummary(run.table).answers();
+std::vector<std::string> pump_answers(const PreparedCase& ready, const ResultTable& table,
+                                      const std::vector<analytic::ValidityLimit>& limits,
+                                      const std::string& by) {
   const PumpParameters& pump = ready.the_case.pump;
-  for (std::string& sentence : TransferSummary(pump, run.table).answers())
-    sentences.push_back(std::move(sentence));
+  std::vector<std::string> sentences = TurnSummary(table).answers();
+  append(sentences, TransferSummary(pump, table).answers());
+  for (std::string& sentence : sentences) sentence.insert(0, by);
   if (std::string play = free_play_answer(pump); !play.empty())
     sentences.push_back(std::move(play));
-  for (std::string& sentence : limit_answers(limits)) sentences.push_back(std::move(sentence));
+  append(sentences, limit_answers(limits));
   if (ready.hydraulics)
     sentences.push_back(timing_answer(timing_rows(ready.the_case, *ready.hydraulics)));
   return sentences;
+}
+
+std::vector<std::string> ShownPump::answers() const {
+  return pump_answers(ready, run.table, limits);
 }
 
 ShownPump show_pump(Case the_case, const PartProgress& progress_of) {

@@ -39,6 +39,12 @@ struct Plausibility {
 /// @throws InputError where `[plausibility] meant` names no check or gives no reason
 Plausibility plausibility(const Case& the_case);
 
+/// Of a displacement, m3 per revolution: V (delivery - suction) / 2 pi, Nm; 0 without a sign.
+double ideal_torque(double displacement, const PortPressures& ports);
+
+/// Whether the chamber pressure of a case is of kind "hydraulic" and still to be computed.
+bool lacks_pressure(const PressureSpec& pressure);
+
 /// The reason that `[plausibility] meant` gives for a check or for a verdict on the timing of the
 /// ports (study/timing.h), or "".
 /// @throws InputError as above

@@ -10,6 +10,12 @@
 
 namespace bentaxis::study {
 
+/// What is asked first of a pump, in sentences: torque and forces, and what makes them invalid.
+/// @param by  put before the sentences on results: "By the analytic model: "
+std::vector<std::string> pump_answers(const PreparedCase& ready, const ResultTable& table,
+                                      const std::vector<analytic::ValidityLimit>& limits,
+                                      const std::string& by = "");
+
 /// One driven turn of the analytic model, with all loads on all bodies.
 struct ShownPump {
   PreparedCase ready;
@@ -17,7 +23,6 @@ struct ShownPump {
   std::vector<analytic::ValidityLimit> limits;
   CaseDescription description;
 
-  /// What is asked first, in sentences: torque and forces, and what makes them invalid.
   std::vector<std::string> answers() const;
 };
 
