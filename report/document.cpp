@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "base64.h"
+#include "bentaxis/compare/stated_difference.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/report/picture.h"
 #include "json_fields.h"
@@ -70,6 +71,7 @@ inline void to_json(nlohmann::json& json, const ChannelComparison& c) {
   json["rms"] = known(c.rms);
   json["rms_over_peak"] = known(c.rms_over_peak());
   json["theta_of_max_deg"] = known(c.theta_of_largest_deg);
+  if (is_nearest_to_limit(c)) json["nearest_to_limit"] = true;
   json["mean"] = {known(c.mean[0]), known(c.mean[1])};
   json["mean_difference"] = known(c.mean_difference);
   json["digits"] = known(c.digits);
@@ -603,7 +605,16 @@ Json packed_tables(const Curves& curves) {
   return tables;
 }
 
-std::string dumped(const Json& json, int indent) {
+// A zero is written without its sign.
+void drop_signs_of_zeros(Json& json) {
+  if (json.is_structured())
+    for (Json& one : json) drop_signs_of_zeros(one);
+  else if (json.is_number_float() && json.get<double>() == 0)
+    json = 0.0;
+}
+
+std::string dumped(Json json, int indent) {
+  drop_signs_of_zeros(json);
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <map>
 
+#include "bentaxis/compare/stated_difference.h"
+
 namespace bentaxis::report {
 
 std::string text_table(const compare::Comparison& comparison) {
@@ -34,9 +36,11 @@ std::string text_table(const compare::Comparison& comparison) {
                           c->peak, c->channel.unit, "", "", "",
                           c->gap.empty() ? "not computed by both" : "incomplete: " + c->gap);
     else
-      text += fmt::format("{:<16} {:>12.5g} {:>4}  {:>12.2e} {:>10.1e} {:>7.1f}  {}\n",
-                          c->channel.name, c->peak, c->channel.unit, c->largest,
-                          c->largest_over_peak(), c->digits, compare::to_string(c->verdict));
+      text += fmt::format(
+          "{:<16} {:>12.5g} {:>4}  {:>12.2e} {:>10.1e} {:>7.1f}  {}\n", c->channel.name, c->peak,
+          c->channel.unit, c->largest, c->largest_over_peak(), c->digits,
+          std::string(compare::to_string(c->verdict)) +
+              (compare::is_nearest_to_limit(*c) ? ", difference nearest to its limit" : ""));
   }
   return text;
 }

@@ -6,6 +6,7 @@ usage: verdict_test.py BENTAXIS REPO_ROOT [options of unittest]
 Every command that can end with exit status 1 is run where its verdict is "no", and where it is "yes".
 """
 
+import csv
 import json
 import pathlib
 import re
@@ -192,7 +193,7 @@ class Verdicts(unittest.TestCase):
             self.assertEqual(entry["headline"], verdict["headline"], name)
             self.assertTrue(entry["headline"], name)
             self.assertEqual("no" in pathlib.PurePath(name).parts[1].split("_") or "not_explained" in name, entry["agrees"] is False, name)
-            tone = "bad" if entry["agrees"] is False else "warn" if entry["warnings"] else "good" if entry["agrees"] else "neutral"
+            tone = "bad" if entry["agrees"] is False else "warn" if entry["warnings"] or entry["not_valid"] else "good" if entry["agrees"] else "neutral"
             self.assertEqual(rows[entry["page"]], tone, name)
             line = next(line for line in lines if f" {name}: " in line)
             # The word of its page, where it does not agree.
@@ -213,6 +214,131 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(run("index", place).returncode, 0)
         entry = json.loads((place / "index.json").read_text())["reports"][0]
         self.assertEqual((entry["agrees"], entry["word"], entry["warnings"]), (False, "Reference differs", ["timing", "tilt"]))
+
+
+class NotCompared(unittest.TestCase):
+    """What was not compared is named with the reason, and is neither agreement nor a difference."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.out = self.folder / "out"
+        self.case = REPO / "cases/bap63_rated.toml"
+
+    def run_case(self, *arguments, status=0, report="report.json"):
+        done = run(*arguments, "--out", self.out)
+        self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+        return done, json.loads((self.out / report).read_text()) if status != 2 else None
+
+    def test_compare_where_nothing_is_left(self):
+        imposed = ["--analytic", "gear=imposed", "--multibody", "gear=imposed"]
+        for more in ([], ["--multibody", "piston_friction=off"]):
+            done, _ = self.run_case("compare", self.case, *FEW, *imposed, *more, "--channels", "Rcs", status=2)
+            self.assertRegex(done.stderr, r"--channels Rcs: nothing was compared: Rcs is computed by neither model: the speed of the block is imposed\n$")
+            self.assertEqual(done.stdout, "")
+            self.assertFalse(self.out.exists())
+        done, _ = self.run_case("compare", self.case, *FEW, "--analytic", "gear=imposed", "--channels", "Rcs", status=2)
+        self.assertIn("Rcs is not computed by the analytic model", done.stderr)
+        done, _ = self.run_case("compare", self.case, *FEW, *imposed, "--channels", "Rcs,Td")
+        self.assertRegex(done.stdout, "The two models agree. Largest difference Td_z1_Nm")
+
+    def test_a_difference_that_is_not_the_largest_is_not_called_so(self):
+        """Where Fh passes 0 the point of action is as uncertain as it is far away."""
+        done, report = self.run_case("compare", self.case, "--set", "block.bottom_area_mm2=200")
+        channels = {channel["name"]: channel for channel in report["channels"]}
+        with open(self.out / "analytic.csv") as one, open(self.out / "multibody.csv") as other:
+            rows = list(zip(csv.DictReader(one), csv.DictReader(other)))
+        largest = max(abs(float(a["yh_y2_mm"]) - float(b["yh_y2_mm"])) for a, b in rows)
+        worst = channels[report["verdict"]["worst"]["channel"]]
+        self.assertEqual((worst["name"], worst["nearest_to_limit"]), ("yh_y2_mm", True))
+        self.assertLess(worst["max_abs"], 0.9 * largest)
+        self.assertRegex(done.stdout, r"\nThe two models agree. Difference nearest to its limit: yh_y2_mm at ")
+        self.assertRegex(done.stdout, r"\nyh_y2_mm .* agrees, difference nearest to its limit\n")
+        # What is held to its peak alone has its largest difference.
+        for name in ("Rb1_x1_N", "Td_z1_Nm", "Fh_z2_N"):
+            self.assertNotIn("nearest_to_limit", channels[name])
+            self.assertAlmostEqual(max(abs(float(a[name]) - float(b[name])) for a, b in rows), channels[name]["max_abs"], delta=0)
+
+    def test_outputs_of_a_sweep_that_both_models_share(self):
+        sweep = ["sweep", self.case, *FEW, "--vary", "pump.tilt_deg=20:40:10", "--check", "100%", "--output"]
+        shared = ["validity.friction", "stroke_mm", "plausibility.warnings", "max:p_1", "validity.film.share"]
+        done, report = self.run_case(*sweep, ",".join(["peak:Rb1", *shared]))
+        for name in shared:
+            self.assertRegex(done.stdout, rf"Not checked by the other model: [^\n]*{name}[^ ]* \(")
+        checks = {row["title"]: row for row in report["runs"]}["Recomputed by Simbody"]["table"]["rows"]
+        self.assertEqual([row[1] for row in checks], [3, 0, 0, 0, 0, 0])
+        rows = [line.split(",") for line in (self.out / "sweep_checks.csv").read_text().splitlines()]
+        self.assertEqual({row[1]: row[6] for row in rows[1:]}["peak:Rb1"], "1")
+        self.assertEqual({row[6] for row in rows[1:] if row[1] != "peak:Rb1"}, {""})
+        shutil.rmtree(self.out)
+        done, _ = self.run_case(*sweep, ",".join(shared), status=2)
+        self.assertIn("--check: none of the outputs is computed independently by both models", done.stderr)
+
+    def test_designs_that_both_models_refuse(self):
+        sweep = ["sweep", self.case, *FEW, "--check", "100%", "--output", "peak:Rb1", "--vary"]
+        done, report = self.run_case(*sweep, "pump.tilt_deg=40:100:30")
+        self.assertIn("Simbody agrees at 1 of 1 designs; 2 of 3 checked designs not compared: both models refuse them", done.stdout)
+        self.assertIs(report["verdict"]["agrees"], True)
+        done, report = self.run_case(*sweep, "pump.tilt_deg=90,100", status=1)
+        self.assertNotIn("agrees", done.stdout)
+        self.assertEqual((report["verdict"]["agrees"], report["verdict"]["word"]), (False, "Nothing compared"))
+
+    def test_derivatives_that_both_models_share(self):
+        sensitivity = ["sensitivity", self.case, *FEW, "--vary", "pump.tilt_deg", "--check-derivatives", "--output"]
+        done, report = self.run_case(*sensitivity, "mean:Td,stroke_mm,validity.friction", report="sensitivity.json")
+        self.assertRegex(done.stdout, "1 of 3 derivatives agree with differences of Simbody")
+        self.assertRegex(done.stdout, r"Not checked by the other model: stroke_mm \(follows from the case alone\), validity.friction \(")
+        table = {row["title"]: row for row in report["runs"]}["Against Simbody"]["table"]["rows"]
+        self.assertEqual([row[0] for row in table if row[5] is not None], ["mean:Td"])
+        shutil.rmtree(self.out)
+        done, _ = self.run_case(*sensitivity, "stroke_mm,displacement_cm3", status=2)
+        self.assertIn("--check-derivatives: none of the outputs is computed independently by both models: stroke_mm", done.stderr)
+
+    def test_a_curve_that_a_golden_reference_lacks(self):
+        golden = self.folder / "golden"
+        self.assertEqual(run("reference", "golden", self.case, *FEW, "--angles", "36", "--out", golden).returncode, 0)
+        (curve,) = golden.glob("*.csv")
+        lines = [line.split(",") for line in curve.read_text().splitlines()]
+        place = lines[0].index("Td_z1_Nm")
+        curve.write_text("".join(",".join(line[:place] + line[place + 1:]) + "\n" for line in lines))
+        missing = r"Not compared: Td_z1_Nm \(the reference does not have it\)"
+        done, report = self.run_case("compare", self.case, *FEW, "--with", golden, status=1)
+        self.assertRegex(done.stdout, rf"The reference golden is incomplete: (\d+) of \1 reactions compared agree\.[^\n]*{missing}")
+        self.assertNotIn("differ from golden", done.stdout)
+        self.assertEqual(report["verdict"]["word"], "Reference incomplete")
+        done = run("regress", golden)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stdout, "^0 agree, 0 differ, 1 incomplete; ")
+        self.assertRegex(done.stdout, rf"\ngolden is incomplete: (\d+) of \1 reactions compared agree\.[^\n]*{missing}")
+
+    def test_both_pumps_are_described(self):
+        """A second pump that tips and is timed badly, beside one that does not."""
+        second = self.folder / "second.toml"
+        text = (REPO / "cases/bap63_rated_hydraulic.toml").read_text()
+        text = re.sub(r'(?m)^name = .*$', 'name = "second"', text, count=1)
+        second.write_text(re.sub(r"(?m)^bottom_area_mm2 = .*$", "bottom_area_mm2 = 0", text))
+        done, report = self.run_case("compare", REPO / "cases/bap63_rated_hydraulic.toml", *FEW, "--multibody-case", second, status=1)
+        names = [self.name_of(REPO / "cases/bap63_rated_hydraulic.toml") + " (analytic model)", "second (multibody model)"]
+        for rows, key in ((report["validity"], "limit"), (report["timing"], "quantity")):
+            for name in names:
+                self.assertTrue(any(row[key].startswith(name + ": ") for row in rows), (name, key))
+            self.assertTrue(all(row[key].startswith(tuple(name + ": " for name in names)) for row in rows), key)
+        violated = [row for row in report["validity"] if row["violated"] and row["limit"].startswith(names[1])]
+        self.assertTrue(violated)
+        self.assertIn("of second (multibody model)", report["verdict"]["not_valid"])
+        lift = [row for row in report["plausibility"]["warnings"] if row["code"] == "block-lifts-off"]
+        self.assertEqual([row["text"].startswith(names[1] + ": ") for row in lift], [True])
+        for name in names:
+            self.assertIn(name + ": Drive torque: mean ", done.stdout)
+            self.assertIn(name + ": Port timing: ", done.stdout)
+        self.assertIn(names[1] + ": Not valid over ", done.stdout)
+        self.assertRegex(done.stderr, r"(?s)^pump of the analytic model: \S*bap63_rated_hydraulic.toml\n.*"
+                         r"pump of the multibody model: \S*second.toml\n.*warning: block-lifts-off: ")
+        self.assertTrue(any(w["text"].startswith(names[1] + ": over ") for w in report["warnings"]))
+
+    @staticmethod
+    def name_of(case):
+        return re.search(r'(?m)^name = "(.*)"', case.read_text()).group(1)
 
 
 class RoundOff(unittest.TestCase):

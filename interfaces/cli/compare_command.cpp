@@ -66,7 +66,10 @@ std::string all_transfers() {
 }
 bool is_transfer(const std::string& text) { return text.starts_with(kTransfer); }
 Case read_with(CaseOption of, const std::string& option,
-               const std::vector<std::string>& assumptions) {
+               const std::vector<std::string>& assumptions, bool two_pumps) {
+  // Whose pump the next lines are about.
+  if (two_pumps)
+    std::fprintf(stderr, "pump of the %s model: %s\n", option.c_str() + 2, of.file.c_str());
   for (const std::string& text : assumptions) {
     if (!is_transfer(text)) continue;
     const std::string kind = text.substr(std::size(kTransfer) - 1);
@@ -118,13 +121,12 @@ int compare(const CompareOptions& options) {
     throw InputError(
         "--multibody-case: must be left out beside an assumption transfer=..: the other case says "
         "itself what drives its block");
-  Case first = read_with(options.the_case, "--analytic", options.analytic);
+  CaseOption of_second = options.the_case;
+  if (!options.multibody_case.empty()) of_second.file = options.multibody_case;
+  const bool two_pumps = transfer || !options.multibody_case.empty();
+  Case first = read_with(options.the_case, "--analytic", options.analytic, two_pumps);
   std::optional<Case> second;
-  if (transfer)
-    second = read_with(options.the_case, "--multibody", options.multibody);
-  else if (!options.multibody_case.empty())
-    second = CaseOption{options.multibody_case, options.the_case.changes, options.the_case.strict}
-                 .read();
+  if (two_pumps) second = read_with(of_second, "--multibody", options.multibody, true);
   for (const auto& text : options.analytic)
     if (!is_transfer(text)) study::apply_assumption(text, first.pump, first.analytic);
   Case& of_multibody = second ? *second : first;
@@ -168,13 +170,13 @@ int compare(const CompareOptions& options) {
   study::ComparisonResult& result = *compared;
   if (result.with) explain_differences(*result.with, given, progress_of);
 
-  const auto refuse = [&](const study::PreparedCase& ready) {
+  const auto refuse = [&](const CaseOption& of, const study::PreparedCase& ready) {
     if (ready.hydraulics)
-      options.the_case.refuse_timing(
+      of.refuse_timing(
           study::timing_warnings(study::timing_rows(ready.the_case, *ready.hydraulics)));
   };
-  refuse(result.first);
-  if (!options.multibody_case.empty()) refuse(result.second);
+  refuse(options.the_case, result.first);
+  if (two_pumps) refuse(of_second, result.second);
 
   std::vector<TextFile> curves = comparison_files(result);
   report::Document document =

@@ -28,16 +28,31 @@
 namespace bentaxis::study {
 namespace {
 
+// Where no pump behaves as computed: "over 7.5 % of the turn"; of two pumps, which.
+std::string not_valid_of(const ComparisonResult& r) {
+  std::string text = not_valid_text(r.limits);
+  if (!r.other) return text;
+  const auto of = [&](const std::string& share, Model model) {
+    return share.empty() ? "" : share + " of " + r.pump_of(model);
+  };
+  text = of(text, Model::analytic);
+  const std::string second = of(not_valid_text(r.other->limits), Model::multibody);
+  return text + (text.empty() || second.empty() ? "" : "; ") + second;
+}
+
 report::Verdict verdict_of(const ComparisonResult& r) {
   report::Verdict verdict{r.passes(), r.headline()};
   verdict.answers = comparison_answers(r);
-  verdict.not_valid = not_valid_text(r.limits);
+  verdict.not_valid = not_valid_of(r);
   if (r.agrees() && !r.split && only_one_computed(r.comparison)) verdict.word = "Agrees in part";
   if (r.with) {
     verdict.models_agree = r.agrees();
     if (r.agrees_but_for_reference()) {
-      verdict.word = "Reference differs";
-      verdict.headline += fmt::format(" They differ from {}: {}", r.with->name, held_text(*r.with));
+      const bool differs = r.with->differs();
+      verdict.word = differs ? "Reference differs" : "Reference incomplete";
+      verdict.headline += (differs ? " They differ from " + r.with->name
+                                   : " The reference " + r.with->name + " is incomplete") +
+                          ": " + held_text(*r.with);
     }
   }
   if (r.engines && r.agrees() && !r.engines->agrees()) {
@@ -260,6 +275,35 @@ std::string aligned(const report::Table& table, const char* number) {
   return text;
 }
 
+// Rows of both pumps, each with its name.
+template <class Row>
+void name_rows(std::vector<Row>& rows, std::string Row::*text, const std::string& pump) {
+  for (Row& row : rows) row.*text = pump + ": " + row.*text;
+}
+template <class Row>
+void add_rows(std::vector<Row>& rows, std::vector<Row> more, std::string Row::*text,
+              const ComparisonResult& r) {
+  name_rows(rows, text, r.pump_of(Model::analytic));
+  name_rows(more, text, r.pump_of(Model::multibody));
+  append(rows, std::move(more));
+}
+
+// What is said of the first pump is said of the second beside it.
+void add_other_pump(report::Document& document, const ComparisonResult& r) {
+  report::PlausibilitySection& first = *document.plausibility;
+  report::PlausibilitySection second = plausibility_section(r.other->plausibility);
+  first.summary = fmt::format("{}: {}; {}: {}", r.pump_of(Model::analytic), first.summary,
+                              r.pump_of(Model::multibody), second.summary);
+  add_rows(first.warnings, std::move(second.warnings), &report::DoubtRow::text, r);
+  add_rows(first.meant, std::move(second.meant), &report::DoubtRow::text, r);
+  add_rows(*document.validity, validity_section(r.other->limits), &report::ValidityRow::limit, r);
+  std::vector<TimingRow> timing;
+  if (r.second.hydraulics) timing = timing_rows(r.second.the_case, *r.second.hydraulics);
+  if (!document.timing && timing.empty()) return;
+  if (!document.timing) document.timing.emplace();
+  add_rows(*document.timing, std::move(timing), &TimingRow::quantity, r);
+}
+
 // The verdict on a reference, its source, and what it says of each figure's reactions.
 void add_reference(report::Document& document, const Outcome& outcome) {
   document.verdict->reference = {outcome.name, held_text(outcome),
@@ -317,6 +361,10 @@ report::Document engine_document(const EngineComparison& engines, const std::str
   report::Document document = case_document(description, case_name, program);
   document.verdict = report::Verdict{engines.agrees(), engines.headline()};
   document.verdict->word = engines.agrees() ? "Engines agree" : "An engine differs";
+  if (!engines.any_results()) {
+    document.verdict->agrees.reset();
+    document.verdict->word = "Nothing compared";
+  }
   report::append(document.warnings, std::vector<Warning>{{"Simbody refuses the case", refusal}});
   document.runs.emplace({engine_section(engines)});
   if (!engines.sweep.empty()) document.runs->push_back(effort_section(engines));
@@ -342,6 +390,7 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   document.common = common_inputs(the_case, false);
   document.validity = validity_section(r.limits);
   if (r.first.hydraulics) document.timing = timing_rows(r.first.the_case, *r.first.hydraulics);
+  if (r.other) add_other_pump(document, r);
   document.models = {report::model_of(r.analytic, in_words(the_case.analytic)),
                      report::model_of(r.multibody, in_words(r.second.the_case.multibody))};
   document.comparison = r.comparison;

@@ -9,17 +9,20 @@
 
 namespace bentaxis::study {
 
-void put_description(report::Document& document, const CaseDescription& description,
-                     std::optional<report::Scene> scene) {
-  document.the_case = case_section(description.the_case);
+report::PlausibilitySection plausibility_section(const Plausibility& looked) {
   const auto rows = [](const std::vector<PlausibilityWarning>& doubts) {
     std::vector<report::DoubtRow> list;
     for (const PlausibilityWarning& doubt : doubts)
       list.push_back({doubt.code, doubt.text, doubt.reason});
     return list;
   };
-  const Plausibility& looked = description.plausibility;
-  document.plausibility = {looked.summary(), rows(looked.warnings), rows(looked.meant)};
+  return {looked.summary(), rows(looked.warnings), rows(looked.meant)};
+}
+
+void put_description(report::Document& document, const CaseDescription& description,
+                     std::optional<report::Scene> scene) {
+  document.the_case = case_section(description.the_case);
+  document.plausibility = plausibility_section(description.plausibility);
   document.picture = pump_picture(description.the_case);
   document.scene = scene ? std::move(scene) : scene_of(description);
   for (const FailedPoint& failed : description.failed)

@@ -225,7 +225,8 @@ report::Document regression_document(const std::vector<Outcome>& outcomes, const
   for (const auto& outcome : outcomes)
     if (!outcome.error.empty()) document.warnings->push_back({outcome.name, outcome.error});
   document.runs = {{"Every case and group of channels, worst first",
-                    "Of peak: largest difference over the reaction's peak in the reference.",
+                    "Of peak: largest difference over the reaction's peak in the reference; where "
+                    "angles are rounded or a curve is resampled, that nearest to its limit.",
                     {},
                     lines_table(outcomes)}};
   if (auto section = explanation_section(outcomes)) document.runs->push_back(std::move(*section));

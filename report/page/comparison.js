@@ -49,6 +49,7 @@ function channelDetails(c, data) {
     ["frame", phrases(c.frame, c.axis && "axis " + c.axis)],
     ["equation", c.equation],
     ["gap", c.gap],
+    ["difference", c.nearest_to_limit ? "nearest to its limit, which changes over the turn" : ""],
     ["RMS difference", unless(c.rms == null, unit(small(c.rms), c.unit))],
     ["tolerance", unless(c.tolerance == null, small(c.tolerance) + " of peak")],
     [`mean (${data.pair.join(" / ")})`, unless(list(c.mean).every(m => m == null), unit(both(c.mean), c.unit))],

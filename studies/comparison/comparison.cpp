@@ -27,8 +27,6 @@
 namespace bentaxis::study {
 namespace {
 
-std::string of_table(const compare::Check& check) { return check.table + ": " + check.name; }
-
 double largest_of(const compare::Comparison& comparison,
                   std::initializer_list<std::string> groups) {
   const auto* const found =
@@ -56,6 +54,30 @@ std::string small_components(const compare::Comparison& comparison) {
       compare::kSmallComponent, text);
 }
 
+// Why a channel is not compared.
+std::string why_not_compared(const compare::ChannelComparison& c, const ComparisonResult& r) {
+  using compare::Comparable;
+  if (!c.judged) return "is an input, given to both models";
+  if (c.missing == Comparable::first_missing) return "is not computed by the analytic model";
+  if (c.missing == Comparable::second_missing) return "is not computed by the multibody model";
+  const auto imposed = [](const Assumptions& a) { return a.gear == BlockDrive::imposed; };
+  if (c.channel.quantity == "Rcs" && imposed(r.first.the_case.analytic) &&
+      imposed(r.second.the_case.multibody))
+    return "is computed by neither model: the speed of the block is imposed";
+  if (c.channel.group == "xh_yh") return "does not exist: the film force is 0 at every angle";
+  return "is computed by neither model for this pump and motion";
+}
+
+// Where both models lack all that was asked for, that is no agreement and no difference.
+void require_something_compared(const ComparisonResult& r) {
+  if (r.comparison.compared() > 0 || r.comparison.incomplete() != nullptr) return;
+  std::vector<std::string> reasons;
+  for (const auto& c : r.comparison.channels)
+    add_once(reasons, c.channel.quantity + " " + why_not_compared(c, r));
+  throw InputError("--channels " + r.options.channels.text() +
+                   ": nothing was compared: " + joined(reasons, "; "));
+}
+
 // A table's values in the columns of another: not computed where it has none of that name.
 ResultTable in_columns_of(const ResultTable& columns, const ResultTable& table) {
   ResultTable same{columns.name, columns.channels, columns.theta_deg, {}, columns.provenance};
@@ -75,7 +97,7 @@ constexpr std::size_t kManyRows = 10'000;
 // The comparison while it is made.
 class Maker {
  public:
-  Maker(PreparedCase first, PreparedCase second, const ComparisonOptions& options,
+  Maker(PreparedCase first, PreparedCase second, bool other_pump, const ComparisonOptions& options,
         const PartProgress& progress_of)
       : progress_of_(progress_of),
         samples_(first.samples(options.way)),
@@ -84,6 +106,7 @@ class Maker {
     result_.first = std::move(first);
     result_.second = std::move(second);
     result_.options = options;
+    if (other_pump) result_.other.emplace();
   }
 
   ComparisonResult make() {
@@ -96,6 +119,10 @@ class Maker {
         {&r.second.the_case, r.second.the_case.multibody, &r.multibody}, progress_of_);
     r.limits =
         analytic::check_validity(r.first.the_case, r.first.the_case.analytic, samples_, r.analytic);
+    if (r.other)
+      r.other = {analytic::check_validity(r.second.the_case, r.second.the_case.multibody,
+                                          multibody_samples_, r.multibody),
+                 plausibility(r.second.the_case)};
     warn();
     if (!r.options.with.empty()) hold_to_reference();
     if (r.options.engines)
@@ -143,6 +170,7 @@ class Maker {
   void run_all();
   void hold_to_reference();
   void note_multiplier_errors();
+  void warn_of(Model model, const std::vector<analytic::ValidityLimit>& limits);
   void warn();
 
   ComparisonResult result_;
@@ -311,6 +339,7 @@ void Maker::compare_tables() {
   r.comparison = compare::compare_tables(r.analytic, r.multibody, comparison_options());
   std::erase_if(r.comparison.channels,
                 [&](const auto& c) { return !r.options.channels.wants(c.channel); });
+  require_something_compared(r);
   for (const ResultTable* table : {&r.analytic, &r.multibody})
     for (auto& check : compare::judge_checks(*table, zero_scales_, r.tolerance))
       r.checks.push_back(std::move(check));
@@ -522,10 +551,7 @@ void Maker::hold_to_reference() {
                         : run_at_angles(r.second, theta_deg, multibody_run(0), progress_of_));
     };
   r.with = hold_results(
-      r.options.with,
-      [&](Model model) -> const Case& {
-        return model == Model::analytic ? r.first.the_case : r.second.the_case;
-      },
+      r.options.with, [&](Model model) -> const Case& { return r.of(model).the_case; },
       [&](Model model) {
         return ReferenceRun{wanted(model, computed(model)), zero_scales_};
       },
@@ -535,16 +561,26 @@ void Maker::hold_to_reference() {
         {"the curves belong to another case", r.with->name + ": " + r.with->other_case});
 }
 
+// Of one of the pumps: what its ports and its limits of validity say.
+void Maker::warn_of(Model model, const std::vector<analytic::ValidityLimit>& limits) {
+  const PreparedCase& ready = result_.of(model);
+  const auto warn = [&](Warning warning) {
+    if (result_.other) warning.text = result_.pump_of(model) + ": " + warning.text;
+    result_.warnings.push_back(std::move(warning));
+  };
+  if (ready.hydraulics) {
+    for (auto& warning : timing_warnings(timing_rows(ready.the_case, *ready.hydraulics)))
+      warn(std::move(warning));
+    if (auto warning = accuracy_warning(ready.the_case, *ready.hydraulics))
+      warn(std::move(*warning));
+  }
+  for (Warning& warning : limit_warnings(limits)) warn(std::move(warning));
+}
+
 void Maker::warn() {
   ComparisonResult& r = result_;
-  if (r.first.hydraulics)
-    for (auto& warning : timing_warnings(timing_rows(r.first.the_case, *r.first.hydraulics)))
-      r.warnings.push_back(std::move(warning));
-  for (const PreparedCase* ready : {&r.first, &r.second})
-    if (ready->hydraulics && (ready == &r.first || ready->the_case.file != r.first.the_case.file))
-      if (auto warning = accuracy_warning(ready->the_case, *ready->hydraulics))
-        r.warnings.push_back(std::move(*warning));
-  append(r.warnings, limit_warnings(r.limits));
+  warn_of(Model::analytic, r.limits);
+  if (r.other) warn_of(Model::multibody, r.other->limits);
   r.rounding = rounding_lines(r.first.the_case, r.first.the_case.analytic);
   for (const auto& text : rounding_warnings(r.rounding))
     r.warnings.push_back({"digits lost to rounding", text});
@@ -599,7 +635,7 @@ void Maker::note_multiplier_errors() {
       for (const auto& there : checks)
         if (!check.holds() && there.holds() && check.table == r.multibody.name &&
             there.table == check.table && there.name == check.name)
-          r.losses.multipliers[of_table(check)] = check.relative();
+          r.losses.multipliers[full_name(check)] = check.relative();
   } catch (const ComputationError&) {
     // That method refuses the case: it says nothing.
   }
@@ -611,185 +647,6 @@ Lines in_words(const Assumptions& a) {
   return {{"piston friction", a.piston_friction ? "on" : "off"},
           {"piston inertia", to_string(a.inertia)},
           {"gear", to_string(a.gear)}};
-}
-
-bool ComparisonResult::checks_hold() const {
-  return std::all_of(checks.begin(), checks.end(), [](const auto& check) { return check.holds(); });
-}
-
-bool ComparisonResult::agrees() const {
-  if (!checks_hold() || comparison.incomplete() != nullptr) return false;
-  if (budget && !budget->comparison.agrees()) return false;
-  if (teeth && !split && !teeth->comparison.agrees()) return false;
-  return split ? split->explained() : comparison.agrees();
-}
-
-bool ComparisonResult::agrees_but_for_reference() const {
-  return agrees() && with && with->state != Outcome::State::agrees;
-}
-
-bool ComparisonResult::passes() const {
-  return agrees() && !agrees_but_for_reference() && (!engines || engines->agrees());
-}
-
-namespace {
-
-// A result in which the models differ, or that a check says must vanish and does not.
-struct Failure {
-  std::string name;   ///< of the column or the check
-  std::string group;  ///< of the reactions whose round-off it carries
-  double off = 0;     ///< in its unit
-  double scale = 0;
-};
-
-// The reactions whose round-off a quantity carries: the film force's point is Th over Fh, torques
-// about z2 are those of forces.
-std::vector<std::string> carried_by(const std::string& group) {
-  if (group == "xh_yh") return {"Th", "Fh"};
-  if (group == "Tcs") return {"Rcs"};
-  if (group == "Tc") return {"Rc"};
-  // Parts of torques, by the forces of the pistons that make them.
-  if (group == "parts of Tcs") return {"Rcs", "Rc"};
-  if (group == "parts of Td") return {"Td", "Rs"};
-  if (group == "teeth") return {"Rcs", "Rcn", "Th"};  // by forces of pairs and where these act
-  return {group};
-}
-
-// Of a column of the budgets: the whole that it is a part of.
-std::string whole_of(const std::string& column) {
-  return column.starts_with("Tcs_")  ? "parts of Tcs"
-         : column.starts_with("Td_") ? "parts of Td"
-                                     : "Fh";
-}
-
-std::vector<Failure> failures_of(const ComparisonResult& r) {
-  std::vector<Failure> failures;
-  const auto add = [&](const compare::Comparison& comparison, const auto& group_of) {
-    for (const auto& c : comparison.channels)
-      if (c.judged && c.verdict == compare::Verdict::differs)
-        failures.push_back({c.channel.name, group_of(c.channel), c.largest, c.peak});
-  };
-  add(r.comparison, [](const Channel& channel) { return channel.group; });
-  if (r.budget)
-    add(r.budget->comparison, [](const Channel& channel) { return whole_of(channel.name); });
-  if (r.teeth && !r.split) add(r.teeth->comparison, [](const Channel&) { return "teeth"; });
-  for (const auto& check : r.checks)
-    if (!check.holds())
-      failures.push_back({of_table(check), check.group, check.worst, check.scale});
-  return failures;
-}
-
-std::vector<std::string> compared_groups(const compare::Comparison& comparison) {
-  std::vector<std::string> groups;
-  for (const auto& c : comparison.channels)
-    if (c.compared()) add_once(groups, c.channel.group);
-  return groups;
-}
-
-std::string where_in_words(const compare::ChannelComparison& c) {
-  return fmt::format("{} at {:g} deg: {:.1e} {}, {:.1e} of {}", c.channel.name,
-                     c.theta_of_largest_deg, c.largest, c.channel.unit, c.largest_over_peak(),
-                     compare::scale_in_words(c));
-}
-
-}  // namespace
-
-bool only_one_computed(const compare::Comparison& comparison) {
-  return std::any_of(comparison.channels.begin(), comparison.channels.end(), [](const auto& c) {
-    return c.verdict == compare::Verdict::not_computed &&
-           (c.missing == compare::Comparable::first_missing ||
-            c.missing == compare::Comparable::second_missing);
-  });
-}
-
-std::optional<DifferenceCause> ComparisonResult::cause() const {
-  if (agrees() || split) return std::nullopt;
-  std::map<std::string, double> known = losses.groups;
-  for (const RoundingLine& line : rounding)
-    known[line.group] = std::max(known[line.group], line.total());
-  constexpr double kEstimateFactor = 10;
-  DifferenceCause least;
-  std::string group, measured;
-  double worst = 0, largest_change = 0;
-  for (const Failure& failure : failures_of(*this)) {
-    if (!(failure.scale > 0)) return std::nullopt;
-    double estimate = 0;
-    for (const std::string& carrier : carried_by(failure.group)) estimate += known[carrier];
-    const auto change = losses.multipliers.find(failure.name);
-    const bool by_multipliers = change != losses.multipliers.end() && change->second > estimate;
-    if (by_multipliers) estimate = change->second;
-    if (by_multipliers && change->second > largest_change) {
-      largest_change = change->second;
-      measured = failure.name;
-    }
-    const double over = failure.off / failure.scale;
-    if (!(over <= kEstimateFactor * estimate)) return std::nullopt;
-    if (over / estimate <= worst) continue;
-    worst = over / estimate;
-    least.round_off = estimate;
-    least.over_scale = over;
-    group = failure.group;
-  }
-  if (group.empty()) return std::nullopt;
-  if (!measured.empty())
-    least.text = fmt::format(
-        "The cause is round-off in Simbody's constraint multipliers: without them (--reactions "
-        "residual) {} changes by {:.1e} of its scale.",
-        measured, largest_change);
-  else
-    least.text = fmt::format(
-        "The cause is round-off: rounding of inputs and intermediate results changes {} of this "
-        "case by about {:.1e} of its scale.",
-        group, least.round_off);
-  return least;
-}
-
-std::string ComparisonResult::headline() const {
-  if (const auto* gap = comparison.incomplete())
-    return fmt::format("Agreement of the two models cannot be shown: {} of {}.", gap->gap,
-                       gap->channel.name);
-  const auto found = cause();
-  const std::string because = found ? " " + found->text : "";
-  const bool channels_agree = split ? split->explained() : comparison.agrees();
-  if (budget && channels_agree && !budget->comparison.agrees())
-    if (const auto* apart = budget->comparison.failed())
-      return fmt::format("The torque budgets of the two models differ: {} (tolerance {:g}).{}",
-                         where_in_words(*apart),
-                         split ? split->tolerance : budget->comparison.tolerance, because);
-  if (teeth && channels_agree && !split && !teeth->comparison.agrees()) {
-    if (const auto* gap = teeth->comparison.incomplete())
-      return fmt::format("Agreement of the teeth of the two models cannot be shown: {} of {}.",
-                         gap->gap, gap->channel.name);
-    if (const auto* apart = teeth->comparison.failed())
-      return fmt::format("The teeth of the two models differ: {} (tolerance {:g}).{}",
-                         where_in_words(*apart), teeth->comparison.tolerance, because);
-  }
-  if (channels_agree)
-    if (const auto* check = compare::failed_check(checks))
-      return fmt::format(
-          "A check of the {} model fails: {} is {:.1e} {} at {:g} deg, {:.1e} of its scale "
-          "(tolerance {:g}).{}",
-          check->table, check->name, check->worst, check->unit, check->theta_deg, check->relative(),
-          check->tolerance, because);
-  const auto* worst = comparison.worst();
-  const std::string where =
-      worst == nullptr ? ""
-                       : fmt::format("{} at {:g} deg: {:.1e} of {}", worst->channel.name,
-                                     worst->theta_of_largest_deg, worst->largest_over_peak(),
-                                     compare::scale_in_words(*worst));
-  if (split)
-    return fmt::format(
-        "{} The models make different assumptions and differ by up to {}. {}, {:.1e} of peak "
-        "remains (tolerance {:g}).",
-        agrees() ? "Explained." : "Not explained.", where,
-        agrees() ? "After accounting for each assumption" : "Each assumption accounted for",
-        split->largest_rest(), split->tolerance);
-  // What one model alone computed has agreed with nothing.
-  const std::string on = only_one_computed(comparison)
-                             ? " on what both computed: " + joined(compared_groups(comparison))
-                             : "";
-  return fmt::format("The two models {}{}. Largest difference {} (tolerance {:g}).{}",
-                     agrees() ? "agree" : "differ", on, where, comparison.tolerance, because);
 }
 
 void check_same_run(const Case& first, const Case& second) {
@@ -813,12 +670,13 @@ ComparisonResult compare_models(Case analytic_case, std::optional<Case> multibod
         "--engine: must be left out beside --way integrated: engines are compared with driven "
         "models; --engine-way integrated integrates them");
   require_memory(analytic_case, Kept::compared, options.way);
+  const bool other_pump = multibody_case.has_value();
   PreparedCase first = prepare(std::move(analytic_case), progress_of);
   // The same case is solved once: both models get the very same curve.
   PreparedCase second = multibody_case ? prepare(std::move(*multibody_case), progress_of)
                                        : PreparedCase{first.the_case, first.hydraulics,
                                                       PressureTrace(first.the_case.pressure)};
-  return Maker(std::move(first), std::move(second), options, progress_of).make();
+  return Maker(std::move(first), std::move(second), other_pump, options, progress_of).make();
 }
 
 CaseDescription describe(const ComparisonResult& result, const PartProgress& progress_of) {

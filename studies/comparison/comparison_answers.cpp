@@ -9,9 +9,7 @@
 #include "bentaxis/pump/lists.h"
 #include "bentaxis/study/engine_comparison.h"
 #include "bentaxis/study/lost_digits.h"
-#include "bentaxis/study/timing.h"
-#include "bentaxis/study/transfer_summary.h"
-#include "bentaxis/study/turn_summary.h"
+#include "bentaxis/study/shown_pump.h"
 
 namespace bentaxis::study {
 namespace {
@@ -21,7 +19,7 @@ const char* found_text(const Outcome& outcome) {
     case Outcome::State::agrees:
       return " agrees: ";
     case Outcome::State::differs:
-      return " differs: ";
+      return outcome.differs() ? " differs: " : " is incomplete: ";
     case Outcome::State::unusable:
       return " cannot be used: ";
     case Outcome::State::failed:
@@ -80,19 +78,22 @@ std::vector<std::string> comparison_answers(const ComparisonResult& r) {
     for (std::size_t a = 0; a < r.split->assumptions.size(); ++a)
       if (std::string text = contribution_text(*r.split, a); !text.empty())
         sentences.push_back(std::move(text));
-  const PumpParameters& pump = r.first.the_case.pump;
-  std::vector<std::string> of_turn = TurnSummary(r.analytic).answers();
-  append(of_turn, TransferSummary(pump, r.analytic).answers());
-  // Under unequal assumptions the other model's are others; in a smaller scene it has none.
-  if (r.split || only_one_computed(r.comparison))
-    for (std::string& sentence : of_turn)
-      sentence.insert(0, r.split ? "By the analytic model: " : "By the analytic model alone: ");
-  append(sentences, std::move(of_turn));
-  if (std::string play = free_play_answer(pump); !play.empty())
-    sentences.push_back(std::move(play));
-  append(sentences, limit_answers(r.limits));
-  if (r.first.hydraulics)
-    sentences.push_back(timing_answer(timing_rows(r.first.the_case, *r.first.hydraulics)));
+  if (r.other) {
+    // Whose they are is said of every sentence.
+    const auto add = [&](Model model, const ResultTable& table, const auto& limits) {
+      for (const std::string& sentence : pump_answers(r.of(model), table, limits))
+        sentences.push_back(r.pump_of(model) + ": " + sentence);
+    };
+    add(Model::analytic, r.analytic, r.limits);
+    add(Model::multibody, r.multibody, r.other->limits);
+  } else {
+    // Under unequal assumptions the other model's are others; in a smaller scene it has none.
+    append(sentences,
+           pump_answers(r.first, r.analytic, r.limits,
+                        r.split                           ? "By the analytic model: "
+                        : only_one_computed(r.comparison) ? "By the analytic model alone: "
+                                                          : ""));
+  }
   if (std::string text = lost_digits_text(r.rounding); !text.empty())
     sentences.push_back(std::move(text));
   return sentences;

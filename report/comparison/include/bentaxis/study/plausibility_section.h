@@ -9,6 +9,8 @@
 
 namespace bentaxis::study {
 
+report::PlausibilitySection plausibility_section(const Plausibility& looked);
+
 /// Puts the case, its plausibility warnings and its pictures into a report, and a warning for each
 /// part of the description that could not be computed.
 /// @param scene  the pump in space; otherwise that of the description's turn, where there is one

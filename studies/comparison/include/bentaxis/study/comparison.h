@@ -71,6 +71,20 @@ struct DifferenceCause {
   double over_scale = 0;  ///< and by how much the models differ in it
 };
 
+/// A check among those of both models: its key in MultibodyLosses::multipliers.
+inline std::string full_name(const compare::Check& check) {
+  return check.table + ": " + check.name;
+}
+
+/// Whose pump something is of, where each model has its own: "NAME (analytic model)".
+std::string pump_name(const Case& the_case, Model model);
+
+/// What is to be known of the second pump, where the multibody model is given another case.
+struct OtherPump {
+  std::vector<analytic::ValidityLimit> limits;  ///< of the multibody model's results
+  Plausibility plausibility;
+};
+
 /// Everything that a comparison came to.
 struct ComparisonResult {
   PreparedCase first, second;                     ///< of the analytic and of the multibody model
@@ -88,13 +102,17 @@ struct ComparisonResult {
   std::string choice;                        ///< integrated to an error: what was chosen
   std::vector<ResultTable>
       without_viscous;  ///< Rcs and Tcs of both models with Cc = 0 (Fig. 32), where it is not
-  std::vector<analytic::ValidityLimit> limits;
+  std::vector<analytic::ValidityLimit> limits;  ///< of the first case
+  std::optional<OtherPump> other;               ///< of the second, where it is another one
   std::vector<RoundingLine> rounding;
   MultibodyLosses losses;  ///< of a driven run
   std::vector<Warning> warnings;
   std::optional<compare::PublishedTable> published;
   std::optional<Outcome> with;                      ///< both models held to a reference
   std::shared_ptr<const EngineComparison> engines;  ///< where any were asked for
+
+  const PreparedCase& of(Model model) const { return model == Model::analytic ? first : second; }
+  std::string pump_of(Model model) const { return pump_name(of(model).the_case, model); }
 
   bool checks_hold() const;
   /// The verdict: every check holds, no channel lacks a value it should have, and each difference,
@@ -123,7 +141,7 @@ bool only_one_computed(const compare::Comparison& comparison);
 /// Runs both models on a case, or on one each, and compares.
 /// @param multibody_case  of the multibody model where it is another one: what would a wrong input
 ///                        do? Must have the same pistons, samples and revolutions.
-/// @throws InputError, ComputationError
+/// @throws InputError, also where the options leave nothing to compare; ComputationError
 ComparisonResult compare_models(Case analytic_case, std::optional<Case> multibody_case,
                                 const ComparisonOptions& options,
                                 const PartProgress& progress_of = silent());

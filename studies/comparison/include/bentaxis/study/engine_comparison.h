@@ -117,6 +117,7 @@ struct EngineComparison {
   /// Channels that no engine gives, with the reason.
   std::vector<std::pair<std::string, std::string>> not_given;
 
+  bool any_results() const { return results.size() > models; }  ///< of an engine
   /// No engine differs from the analytic model or from the curve by more than its tolerance.
   bool agrees() const;
   /// The engines without results, a line each.
