@@ -11,6 +11,7 @@
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/full_key.h"
+#include "bentaxis/pump/input_limits.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/registry.h"
 #include "bentaxis/pump/text.h"
@@ -211,11 +212,13 @@ class CaseReader {
     return p.words[in.choice(p.key, p.words, index)];
   }
 
-  // A number of the file may leave the range of double in SI, or lose digits there.
+  // A number of the file may lose digits in SI, or what is computed of it leave the range of
+  // double.
   static void require_si(TableReader& in, const Parameter& p, double value) {
     const double si = p.unit.to_si == nullptr ? value : p.unit.to_si(value);
-    if (in.has(p.key) && value != 0 && !std::isnormal(si))
-      in.fail(p.key, "must be 0 or, in SI units, of a magnitude between 2.3e-308 and 1.7e308");
+    if (in.has(p.key) && value != 0 && !(std::isnormal(si) && std::abs(si) <= kLargestInput))
+      in.fail(p.key, "must be 0 or, in SI units, of a magnitude between 2.3e-308 and " +
+                         number_text(kLargestInput));
   }
 
   void read_curve(const TableReader& in, const Parameter& parameter, const CurveField& field,

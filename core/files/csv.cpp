@@ -14,7 +14,9 @@
 #include "bentaxis/files/input_file.h"
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/characters.h"
+#include "bentaxis/pump/counted.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/input_limits.h"
 #include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/text.h"
@@ -192,6 +194,9 @@ PressureCurve read_pressure_curve(const std::filesystem::path& file) {
       refuse("> " + number_text(curve.theta_deg.back()) + " deg (angles increase strictly)");
     const double pascal =
         known_unit(table.units[pressure.index]) == "bar" ? pascals(value) : value * pressure.unit;
+    if (!kPressureRange.contains(pascal / kPascalPerBar))
+      throw InputError(table.place(i) + ": " + table.header[pressure.index] + " = " +
+                       number_text(value) + ": must be " + kPressureRange.text() + " bar");
     constexpr double kSameAngle = 1e-9;
     if (i > 0 && i + 1 == table.rows.size() &&
         std::abs(theta - curve.theta_deg.front() - 360) < kSameAngle) {
@@ -219,6 +224,16 @@ namespace {
                    ": must be " + range);
 }
 
+// The points of an input.
+NumericTable points_in(const std::filesystem::path& file) {
+  NumericTable table = read_numeric_csv(file);
+  for (std::size_t i = 0; i < table.rows.size(); ++i)
+    for (std::size_t c = 0; c < table.rows[i].size(); ++c)
+      if (std::abs(table.rows[i][c]) > kLargestInput)
+        refuse_value(file, table, i, c, "of a magnitude up to " + number_text(kLargestInput));
+  return table;
+}
+
 // The angle of a row over the turn, after those before it.
 double next_angle(const std::filesystem::path& file, const NumericTable& table, std::size_t row,
                   const std::vector<double>& before) {
@@ -236,14 +251,14 @@ double next_angle(const std::filesystem::path& file, const NumericTable& table, 
 
 [[noreturn]] void refuse_count(const std::filesystem::path& file, std::size_t points,
                                std::size_t fewest) {
-  throw InputError(file.string() + ": has " + std::to_string(points) +
-                   " points, must be at least " + std::to_string(fewest));
+  throw InputError(file.string() + ": has " + counted(points, "point") + ", must be at least " +
+                   std::to_string(fewest));
 }
 
 }  // namespace
 
 OpeningTable read_opening_table(const std::filesystem::path& file) {
-  const NumericTable table = read_numeric_csv(file);
+  const NumericTable table = points_in(file);
   if (table.header != std::vector<std::string>{"theta_deg", "area_mm2"})
     throw InputError(file.string() + ":1: header must be theta_deg,area_mm2");
   OpeningTable opening{file, {}, {}};
@@ -261,7 +276,7 @@ OpeningTable read_opening_table(const std::filesystem::path& file) {
 }
 
 StrokeTable read_stroke_table(const std::filesystem::path& file) {
-  const NumericTable table = read_numeric_csv(file);
+  const NumericTable table = points_in(file);
   using Header = std::vector<std::string>;
   StrokeTable stroke{file, {}, {}, table.header == Header{"theta_deg", "volume_cm3"}};
   if (!stroke.is_volume && table.header != Header{"theta_deg", "stroke_mm"})
@@ -288,7 +303,7 @@ namespace {
 // Of a value over `first`, times or speeds, as the file has it.
 TimeCurve read_time_curve(const std::filesystem::path& file, const std::string& first,
                           const std::string& second, bool negative) {
-  const NumericTable table = read_numeric_csv(file);
+  const NumericTable table = points_in(file);
   if (table.header != std::vector<std::string>{first, second})
     throw InputError(file.string() + ":1: header must be " + first + "," + second);
   const bool in_time = first == "time_s";
@@ -329,12 +344,12 @@ TimeCurve read_share_curve(const std::filesystem::path& file) {
 }
 
 void read_tooth_errors(const std::filesystem::path& file, ToothData& teeth) {
-  const NumericTable table = read_numeric_csv(file);
+  const NumericTable table = points_in(file);
   if (table.header != std::vector<std::string>{"tooth", "shaft_um", "block_um"})
     throw InputError(file.string() + ":1: header must be tooth,shaft_um,block_um");
   if (table.rows.size() != static_cast<std::size_t>(teeth.count))
-    throw InputError(file.string() + ": has " + std::to_string(table.rows.size()) +
-                     " teeth, must be tooth_number = " + std::to_string(teeth.count));
+    throw InputError(file.string() + ": has " + counted(table.rows.size(), "tooth", "teeth") +
+                     ", must be tooth_number = " + std::to_string(teeth.count));
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     if (table.rows[i][0] != static_cast<double>(i + 1))
       refuse_value(file, table, i, 0, std::to_string(i + 1) + " (teeth in their order)");
@@ -344,12 +359,12 @@ void read_tooth_errors(const std::filesystem::path& file, ToothData& teeth) {
 }
 
 std::vector<double> read_clearance_deviations(const std::filesystem::path& file, int pistons) {
-  const NumericTable table = read_numeric_csv(file);
+  const NumericTable table = points_in(file);
   if (table.header != std::vector<std::string>{"piston", "deviation_um"})
     throw InputError(file.string() + ":1: header must be piston,deviation_um");
   if (table.rows.size() != static_cast<std::size_t>(pistons))
-    throw InputError(file.string() + ": has " + std::to_string(table.rows.size()) +
-                     " pistons, must be [pump] pistons = " + std::to_string(pistons));
+    throw InputError(file.string() + ": has " + counted(table.rows.size(), "piston") +
+                     ", must be [pump] pistons = " + std::to_string(pistons));
   std::vector<double> deviation(table.rows.size());
   std::vector<bool> given(table.rows.size());
   for (std::size_t i = 0; i < table.rows.size(); ++i) {

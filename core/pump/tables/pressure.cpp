@@ -1,4 +1,5 @@
 // [pressure] in the chambers.
+#include "bentaxis/pump/input_limits.h"
 #include "tables/entries.h"
 
 namespace bentaxis::tables {
@@ -28,7 +29,8 @@ Table pressure_table() {
                   "smoothed steps between the port pressures; points of a file; or computed from "
                   "`[hydraulics]`",
                   {.changes_model = true}),
-           number("suction_bar", "p_s", FIELD(c.pressure.ports.suction), kBar, kAny, kRequired,
+           number("suction_bar", "p_s", FIELD(c.pressure.ports.suction), kBar, kPressureRange,
+                  kRequired,
                   "suction pressure; in the port, where it loads the lands; with `ideal` also in "
                   "the chambers",
                   {.also = {"inlet", "inlet_pressure", "low_pressure", "p_low", "p1", "tank",
@@ -38,7 +40,8 @@ Table pressure_table() {
                                  100,
                                  "absolute vacuum is at -1.013, charged circuits reach 30",
                                  {slips::kPascals, slips::kKilopascals, slips::kTenth}}}),
-           number("delivery_bar", "p_d", FIELD(c.pressure.ports.delivery), kBar, kAny, kRequired,
+           number("delivery_bar", "p_d", FIELD(c.pressure.ports.delivery), kBar, kPressureRange,
+                  kRequired,
                   "delivery pressure, likewise; hydraulic: the wanted mean, 0 is an open line",
                   {.also = {"outlet", "outlet_pressure", "discharge", "discharge_pressure",
                             "high_pressure", "p_high", "p2", "load_pressure"},
