@@ -150,7 +150,7 @@ TEST(OptimiseTest, EndsOnAConstraint) {
   EXPECT_GT(violating, 0U);
   EXPECT_EQ(found.designs.infeasible.size(), violating);
   EXPECT_THAT(found.designs.infeasible[0].second,
-              HasSubstr("displacement_cm3 >= 50 cm3: exceeded by"));
+              HasSubstr("displacement_cm3 >= 50 cm3: missed by"));
 }
 
 TEST(OptimiseTest, ChoosesTheEndsOfTheFrontAndItsMiddle) {
