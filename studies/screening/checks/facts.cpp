@@ -8,6 +8,7 @@
 #include "bentaxis/pump/periodic_spline.h"
 #include "bentaxis/pump/registry.h"
 #include "bentaxis/results/samples.h"
+#include "bentaxis/study/plausibility.h"
 #include "bentaxis/study/turn_summary.h"
 
 namespace bentaxis::study::checks {
