@@ -9,7 +9,7 @@ IFS=, read -ra analytic <<< "$2"
 IFS=, read -ra documents <<< "$4"
 status=0
 
-forbid_include() {  # folder, forbidden room
+forbid_include() {  # folder, forbidden module
   if grep -rnE "#include *[\"<]([^\">]*/)?$2/" "$1" --include='*.h' --include='*.cpp'; then
     echo "error: $(basename "$1") includes $2"
     return 1
@@ -52,12 +52,12 @@ forbid_locale() {  # folder..
 
 forbid_include "$source_dir/analytic" multibody || status=1
 forbid_include "$source_dir/multibody" analytic || status=1
-for room in analytic multibody hydraulics; do
-  forbid_include "$source_dir/coupled" $room || status=1
+for module in analytic multibody hydraulics; do
+  forbid_include "$source_dir/coupled" $module || status=1
 done
 # What engines of others are given is written down by neither model.
-for room in analytic multibody; do
-  forbid_include "$source_dir/engines" $room || status=1
+for module in analytic multibody; do
+  forbid_include "$source_dir/engines" $module || status=1
 done
 forbid_symbol "$engines" '(analytic|multibody)' || status=1
 forbid_computing_headers "$source_dir/report" || status=1

@@ -9,12 +9,12 @@ cmake --install "$build" --prefix "$scratch/usr" > /dev/null
 cmake -S "$source_dir/tests/install" -B "$scratch/build" -DCMAKE_PREFIX_PATH="$scratch/usr" \
   -DCMAKE_BUILD_TYPE=Release > "$scratch/log" || { cat "$scratch/log"; exit 1; }
 cmake --build "$scratch/build" > "$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
-# One room of it, without what the others need; and a room there is not.
+# One module of it, without what the others need; and a module there is not.
 cmake -S "$source_dir/tests/install/components" -B "$scratch/components" -DCMAKE_PREFIX_PATH="$scratch/usr" \
   -DCMAKE_BUILD_TYPE=Release > "$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
 cmake --build "$scratch/components" > "$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
 "$scratch/components/uses_analytic"
-if cmake -S "$source_dir/tests/install/components" -B "$scratch/unknown" -DCMAKE_PREFIX_PATH="$scratch/usr" -DROOM=analitic \
+if cmake -S "$source_dir/tests/install/components" -B "$scratch/unknown" -DCMAKE_PREFIX_PATH="$scratch/usr" -DMODULE=analitic \
     > "$scratch/log" 2>&1; then
   echo "an unknown component was found"
   exit 1
@@ -22,7 +22,7 @@ fi
 grep -q 'no component "analitic": there are pump' <(tr -s '\n ' ' ' < "$scratch/log") || { cat "$scratch/log"; exit 1; }
 # The document names every component.
 named=$(sed -n '/^Components:/,/^$/p' "$source_dir/docs/install.md")
-for component in $(sed -n 's/^set(bentaxis_rooms \(.*\))$/\1/p' "$build/bentaxisConfig.cmake" | tr ';' ' '); do
+for component in $(sed -n 's/^set(bentaxis_modules \(.*\))$/\1/p' "$build/bentaxisConfig.cmake" | tr ';' ' '); do
   grep -qF "\`$component\`" <<< "$named" || { echo "docs/install.md: no component $component"; exit 1; }
 done
 cd "$scratch"

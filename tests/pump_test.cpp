@@ -1,4 +1,4 @@
-// Shared room: case files, pressure, curves as CSV, channels, tables, output folders.
+// Shared module: case files, pressure, curves as CSV, channels, tables, output folders.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -32,16 +32,16 @@ function(bentaxis_target name standard)
   endif()
 endfunction()
 
-# A module is a folder: include/bentaxis/ROOM/ is what others see (and what is
-# installed), everything beside it is the room's own. A target finds the headers of what it links and no
+# A module is a folder: include/bentaxis/MODULE/ is what others see (and what is
+# installed), everything beside it is the module's own. A target finds the headers of what it links and no
 # others, so that what is not in target_link_libraries cannot be included.
 #   bentaxis_library(<module> STANDARD <17|20> [FOLDERS <folder>..] SOURCES ...)    folders: where it lies in several
-function(bentaxis_library room)
+function(bentaxis_library module)
   cmake_parse_arguments(ARG "" "STANDARD" "SOURCES;FOLDERS" ${ARGN})
-  set(name bentaxis_${room})
+  set(name bentaxis_${module})
   add_library(${name} STATIC ${ARG_SOURCES})
-  add_library(bentaxis::${room} ALIAS ${name})
-  set_target_properties(${name} PROPERTIES EXPORT_NAME ${room})
+  add_library(bentaxis::${module} ALIAS ${name})
+  set_target_properties(${name} PROPERTIES EXPORT_NAME ${module})
   bentaxis_target(${name} ${ARG_STANDARD})
   if(NOT ARG_FOLDERS)
     set(ARG_FOLDERS .)
@@ -55,10 +55,10 @@ function(bentaxis_library room)
     install(DIRECTORY ${headers}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
   endforeach()
   # A component of find_package(bentaxis) of its own.
-  install(TARGETS ${name} EXPORT bentaxis_${room} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(EXPORT bentaxis_${room} NAMESPACE bentaxis:: FILE bentaxis-${room}.cmake
+  install(TARGETS ${name} EXPORT bentaxis_${module} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT bentaxis_${module} NAMESPACE bentaxis:: FILE bentaxis-${module}.cmake
     DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/bentaxis)
-  set_property(GLOBAL APPEND PROPERTY BENTAXIS_ROOMS ${room})
+  set_property(GLOBAL APPEND PROPERTY BENTAXIS_MODULES ${module})
 endfunction()
 
 # What is linked with a large library is a file of its own, loaded when it is wanted (files/module_folders.h):
@@ -79,20 +79,20 @@ endfunction()
 
 # Several modules under one name: what programs written for 1.0.0 link.
 #   bentaxis_umbrella(<name> <target>..)
-function(bentaxis_umbrella room)
-  set(name bentaxis_${room})
+function(bentaxis_umbrella module)
+  set(name bentaxis_${module})
   add_library(${name} INTERFACE)
-  add_library(bentaxis::${room} ALIAS ${name})
-  set_target_properties(${name} PROPERTIES EXPORT_NAME ${room})
+  add_library(bentaxis::${module} ALIAS ${name})
+  set_target_properties(${name} PROPERTIES EXPORT_NAME ${module})
   target_link_libraries(${name} INTERFACE ${ARGN})
-  install(TARGETS ${name} EXPORT bentaxis_${room})
-  install(EXPORT bentaxis_${room} NAMESPACE bentaxis:: FILE bentaxis-${room}.cmake
+  install(TARGETS ${name} EXPORT bentaxis_${module})
+  install(EXPORT bentaxis_${module} NAMESPACE bentaxis:: FILE bentaxis-${module}.cmake
     DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/bentaxis)
-  set_property(GLOBAL APPEND PROPERTY BENTAXIS_ROOMS ${room})
+  set_property(GLOBAL APPEND PROPERTY BENTAXIS_MODULES ${module})
 endfunction()
 
 # A source that uses SUNDIALS, as an object with SUNDIALS joined to it statically and out of sight
-# (scripts/cmake/isolate.cmake says why). It sees the headers of its room alone. Where Simbody is not built in, SUNDIALS
+# (scripts/cmake/isolate.cmake says why). It sees the headers of its module alone. Where Simbody is not built in, SUNDIALS
 # is linked as usual: <variable>_needs has its libraries.
 #   bentaxis_with_sundials(<target> <source> <variable that receives the object>)
 function(bentaxis_with_sundials name source variable)
@@ -142,9 +142,9 @@ function(bentaxis_compile_fast target)
   endif()
 endfunction()
 
-# For rooms of many short sources behind long headers: the compiler reads the headers once for several sources.
+# For modules of many short sources behind long headers: the compiler reads the headers once for several sources.
 # Off for tools that look at single sources (scripts/check_tidy).
-option(BENTAXIS_JOIN_SOURCES "Compile several sources of a room at a time" ON)
+option(BENTAXIS_JOIN_SOURCES "Compile several sources of a module at a time" ON)
 function(bentaxis_join_sources target count)
   if(BENTAXIS_JOIN_SOURCES)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${count})
@@ -153,9 +153,9 @@ function(bentaxis_join_sources target count)
   endif()
 endfunction()
 
-# For tests that look inside a room: its internal headers too.
-function(bentaxis_see_inside target room)
-  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/${room})
+# For tests that look inside a module: its internal headers too.
+function(bentaxis_see_inside target module)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/${module})
 endfunction()
 
 # For sources that include Simbody. Debian builds Simbody without NDEBUG, and the layout of classes

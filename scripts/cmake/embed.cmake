@@ -1,6 +1,6 @@
-# Writes files as string constants: -DOUTPUT=file.cpp -DFILES=a;b -DHEADER=declares.h -DROOM=report -DFUNCTION=page_parts.
+# Writes files as string constants: -DOUTPUT=file.cpp -DFILES=a;b -DHEADER=declares.h -DMODULE=report -DFUNCTION=page_parts.
 set(text "// Made by scripts/cmake/embed.cmake.\n#include \"${HEADER}\"\n")
-string(APPEND text "namespace bentaxis::${ROOM} {\nconst std::map<std::string, std::string>& ${FUNCTION}() {\n")
+string(APPEND text "namespace bentaxis::${MODULE} {\nconst std::map<std::string, std::string>& ${FUNCTION}() {\n")
 string(APPEND text "  static const std::map<std::string, std::string> parts = {\n")
 foreach(file IN LISTS FILES)
   get_filename_component(name ${file} NAME)
@@ -17,5 +17,5 @@ foreach(file IN LISTS FILES)
   endwhile()
   string(APPEND text "},\n")
 endforeach()
-string(APPEND text "  };\n  return parts;\n}\n}  // namespace bentaxis::${ROOM}\n")
+string(APPEND text "  };\n  return parts;\n}\n}  // namespace bentaxis::${MODULE}\n")
 file(WRITE ${OUTPUT} "${text}")

@@ -1,4 +1,4 @@
-// One instant of a pump of zero size but its pistons' pressure: the room links alone.
+// One instant of a pump of zero size but its pistons' pressure: the module links alone.
 #include <cstdio>
 
 #include "bentaxis/analytic/model.h"
