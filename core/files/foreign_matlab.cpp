@@ -37,30 +37,15 @@ std::vector<double> converted(const matvar_t& variable, std::size_t count) {
 }
 
 std::vector<double> numbers_of(const matvar_t& variable, std::size_t count) {
-  switch (variable.class_type) {
-    case MAT_C_DOUBLE:
-      return converted<double>(variable, count);
-    case MAT_C_SINGLE:
-      return converted<float>(variable, count);
-    case MAT_C_INT8:
-      return converted<mat_int8_t>(variable, count);
-    case MAT_C_UINT8:
-      return converted<mat_uint8_t>(variable, count);
-    case MAT_C_INT16:
-      return converted<mat_int16_t>(variable, count);
-    case MAT_C_UINT16:
-      return converted<mat_uint16_t>(variable, count);
-    case MAT_C_INT32:
-      return converted<mat_int32_t>(variable, count);
-    case MAT_C_UINT32:
-      return converted<mat_uint32_t>(variable, count);
-    case MAT_C_INT64:
-      return converted<mat_int64_t>(variable, count);
-    case MAT_C_UINT64:
-      return converted<mat_uint64_t>(variable, count);
-    default:
-      return {};
-  }
+  using Conversion = std::vector<double> (*)(const matvar_t&, std::size_t);
+  static const std::map<int, Conversion> conversions = {
+      {MAT_C_DOUBLE, converted<double>},     {MAT_C_SINGLE, converted<float>},
+      {MAT_C_INT8, converted<mat_int8_t>},   {MAT_C_UINT8, converted<mat_uint8_t>},
+      {MAT_C_INT16, converted<mat_int16_t>}, {MAT_C_UINT16, converted<mat_uint16_t>},
+      {MAT_C_INT32, converted<mat_int32_t>}, {MAT_C_UINT32, converted<mat_uint32_t>},
+      {MAT_C_INT64, converted<mat_int64_t>}, {MAT_C_UINT64, converted<mat_uint64_t>}};
+  const auto found = conversions.find(variable.class_type);
+  return found == conversions.end() ? std::vector<double>() : found->second(variable, count);
 }
 
 std::vector<std::string> char_rows(const matvar_t& variable) {

@@ -147,10 +147,6 @@ std::string meaning_cell(const Parameter& p) {
   return p.meaning + (when != nullptr ? " (with " + code(to_text(*when)) + ")" : "");
 }
 
-}  // namespace
-
-namespace {
-
 Json uncertainty_schema() {
   Json schema = object("distributions of parameters that are not known exactly, by name");
   schema["additionalProperties"] = {{"type", "string"},
