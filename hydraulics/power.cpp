@@ -65,17 +65,8 @@ std::optional<Place> place_of(std::string_view key) {
 }
 
 const char* name_of(PowerUse use) {
-  switch (use) {
-    case PowerUse::source:
-      return "source";
-    case PowerUse::delivered:
-      return "delivered";
-    case PowerUse::loss:
-      return "loss";
-    case PowerUse::approximation:
-      break;
-  }
-  return "approximation";
+  constexpr const char* kNames[] = {"source", "delivered", "loss", "approximation"};
+  return kNames[static_cast<int>(use)];
 }
 
 double left_over(const PowerBudget& budget) {
