@@ -1,11 +1,5 @@
-#include <cstdio>
-#include <memory>
-#include <string>
-
 #include "bentaxis/study/block_torque.h"
-#include "commands.h"
-#include "console.h"
-#include "options.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -28,16 +22,12 @@ int blocktorque(const BlocktorqueOptions& options) {
 
 Command add_blocktorque_command(CommandParser program) {
   auto options = std::make_shared<BlocktorqueOptions>();
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "blocktorque",
       "Explain the paper's torque from shaft to block against ADAMS: one change at a time");
   add_case(command, options->the_case);
-  command
-      .option("hydraulic", options->hydraulic,
-              "the same pump with the hydraulic model, changed by --set alike")
-      .required()
-      .case_file()
-      .text("HYDRAULIC_CASE");
+  command.option("hydraulic", options->hydraulic, Values::case_file("HYDRAULIC_CASE").required(),
+                 "the same pump with the hydraulic model, changed by --set alike");
   return {command, [options] { return blocktorque(*options); }};
 }
 

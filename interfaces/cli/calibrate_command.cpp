@@ -1,11 +1,5 @@
-#include <cstdio>
-#include <memory>
-
-#include "bentaxis/pump/error.h"
 #include "bentaxis/study/friction_calibration.h"
-#include "commands.h"
-#include "console.h"
-#include "options.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -30,21 +24,14 @@ int calibrate(const CalibrateOptions& options) {
 
 Command add_calibrate_command(CommandParser program) {
   auto options = std::make_shared<CalibrateOptions>();
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "calibrate", "Find the piston friction and shaft losses that give two mean torques");
   add_case(command, options->the_case);
-  command
-      .option("--torque-with-friction", options->wanted.with_friction,
-              "mean drive torque wanted with piston friction, Nm")
-      .required()
-      .positive_number()
-      .text("NUMBER");
-  command
-      .option("--torque-without-friction", options->wanted.without_friction,
-              "the same without piston friction")
-      .required()
-      .positive_number()
-      .text("NUMBER");
+  const Values torque = Values::positive("NUMBER").required();
+  command.option("--torque-with-friction", options->wanted.with_friction, torque,
+                 "mean drive torque wanted with piston friction, Nm");
+  command.option("--torque-without-friction", options->wanted.without_friction, torque,
+                 "the same without piston friction");
   return {command, [options] { return calibrate(*options); }};
 }
 

@@ -1,9 +1,4 @@
-#include <cstdio>
-#include <memory>
-
-#include "bentaxis/pump/error.h"
-#include "commands.h"
-#include "data_folder.h"
+#include "command_tools.h"
 #include "shipped_cases.h"
 
 namespace bentaxis::cli {
@@ -26,7 +21,7 @@ int list_cases(bool json) {
 
 Command add_cases_command(CommandParser program) {
   const auto json = std::make_shared<bool>(false);
-  CommandParser command = program.subcommand("cases", "List the cases that come with the program");
+  auto command = program.subcommand("cases", "List the cases that come with the program");
   command.flag("--json", *json, "print JSON instead of text");
   return {command, [json] { return list_cases(*json); }};
 }

@@ -3,7 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstdio>
+#include <type_traits>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/lists.h"
@@ -132,93 +134,94 @@ Option& Option::text(const std::string& values) {
   return *this;
 }
 
-Option& Option::case_file() {
-  option_->transform(CLI::Validator(
-      [](std::string& text) {
-        text = cli::case_file(text, shipped_cases());
-        return std::string();
-      },
-      ""));
-  return completed_with(case_names(shipped_cases()));
-}
-
-Option& Option::list() {
-  option_->delimiter(',');
-  return *this;
-}
-
-Option& Option::one_value() {
-  option_->expected(1);
-  return *this;
-}
-
-Option& Option::repeatable() {
-  option_->expected(1)->take_all();
-  return *this;
-}
-
-Option& Option::may_be_empty() {
-  option_->get_validator(kNotEmpty)->active(false);
-  return *this;
-}
-
 Option& Option::excludes(const Option& other) {
   option_->excludes(other.option_);
   return *this;
 }
 
-Option& Option::only(const std::string& range, const std::function<bool(double)>& allowed,
-                     bool integer) {
-  option_->get_validator(kAnyNumber)->active(false);
-  option_->check(number_that(range, allowed, integer));
-  return *this;
+Values Values::with(Setting setting) const {
+  Values values = *this;
+  values.settings_.push_back(std::move(setting));
+  return values;
 }
 
-Option& Option::number_in(double low, double high) {
-  return only("in [" + number_text(low) + ", " + number_text(high) + "]",
-              [=](double value) { return value >= low && value <= high; });
+void Values::set(Option& option) const {
+  if (!text_.empty()) option.text(text_);
+  for (const Setting& setting : settings_) setting(option);
 }
 
-Option& Option::positive_number(double high) {
+Values Values::only(const std::string& range, const std::function<bool(double)>& allowed,
+                    bool integer, const std::string& text) {
+  return Values(text).with([=](Option& it) {
+    it.option_->get_validator(kAnyNumber)->active(false);
+    it.option_->check(number_that(range, allowed, integer));
+  });
+}
+
+Values Values::numbers(double low, double high, const std::string& text) {
+  return only(
+      "in [" + number_text(low) + ", " + number_text(high) + "]",
+      [=](double value) { return value >= low && value <= high; }, false, text);
+}
+
+Values Values::positive(const std::string& text, double high) {
   return only(
       std::isfinite(high) ? "a number > 0, at most " + number_text(high) : "a finite number > 0",
-      [=](double value) { return value > 0 && value <= high; });
+      [=](double value) { return value > 0 && value <= high; }, false, text);
 }
 
-Option& Option::accuracy() { return number_in(1e-12, 0.1); }
+Values Values::accuracies(const std::string& text) { return numbers(1e-12, 0.1, text); }
 
-Option& Option::integer_in(int low, int high) {
+Values Values::integers(int low, int high, const std::string& text) {
   return only(
       "an integer in [" + std::to_string(low) + ", " + std::to_string(high) + "]",
       [=](double value) { return value >= low && value <= high && value == std::floor(value); },
-      true);
+      true, text);
 }
 
-Option& Option::one_of(const std::vector<std::string>& words) {
-  option_->check(CLI::Validator(
-      [words](const std::string& text) {
-        return index_of(text, words) ? std::string() : refused(text, words);
-      },
-      ""));
-  return completed_with(words);
+Values Values::words(const std::vector<std::string>& words, const std::string& text) {
+  return Values(text).completed_with(words).with([words](Option& it) {
+    it.option_->check(CLI::Validator(
+        [words](const std::string& given) {
+          return index_of(given, words) ? std::string() : refused(given, words);
+        },
+        ""));
+  });
 }
 
-Option& Option::choice(const std::vector<std::string>& words) {
-  option_->type_name(kChoiceType);
-  option_->transform(CLI::Validator(
-      [words](std::string& text) {
-        const auto index = index_of(text, words);
-        if (!index) return refused(text, words);
-        text = *index;
-        return std::string();
-      },
-      ""));
-  return completed_with(words);
+Values Values::case_file(const std::string& text) {
+  return Values(text).completed_with(case_names(shipped_cases())).with([](Option& it) {
+    it.option_->transform(CLI::Validator(
+        [](std::string& given) {
+          given = cli::case_file(given, shipped_cases());
+          return std::string();
+        },
+        ""));
+  });
 }
 
-Option& Option::completed_with(const std::vector<std::string>& words) {
-  (*words_)[option_] = words;
-  return *this;
+Values Values::required() const {
+  return with([](Option& it) { it.required(); });
+}
+
+Values Values::list() const {
+  return with([](Option& it) { it.option_->delimiter(','); });
+}
+
+Values Values::one() const {
+  return with([](Option& it) { it.option_->expected(1); });
+}
+
+Values Values::repeated() const {
+  return with([](Option& it) { it.option_->expected(1)->take_all(); });
+}
+
+Values Values::may_be_empty() const {
+  return with([](Option& it) { it.option_->get_validator(kNotEmpty)->active(false); });
+}
+
+Values Values::completed_with(const std::vector<std::string>& words) const {
+  return with([words](Option& it) { (*it.words_)[it.option_] = words; });
 }
 
 CommandParser CommandParser::subcommand(const std::string& name, const std::string& what) {
@@ -240,68 +243,90 @@ void CommandParser::accept_anything() { app_->allow_extras(); }
 
 namespace {
 
-CLI::Option* number(CLI::Option* option) {
-  return option->check(number_that("a number", [](double) { return true; }).name(kAnyNumber));
+// How the help text shows the values of a variable, with the one that it has by now.
+std::string shown(double value) {
+  std::string text = number_text(value);
+  if (const auto at = text.find("e-0"); at != std::string::npos) text.erase(at + 2, 1);
+  return "NUMBER [" + text + "]";  // 1e-9, not 1e-09
 }
-
-// Nothing is what a script passes whose variable is not set: it must not count as not given.
-CLI::Option* text(CLI::Option* option) {
-  return option->check(CLI::Validator(
-      [](const std::string& value) {
-        return value.empty() ? std::string("must not be empty") : std::string();
-      },
-      "", kNotEmpty));
+std::string shown(std::integral auto value) { return "NUMBER [" + std::to_string(value) + "]"; }
+std::string shown(const std::optional<double>&) { return "NUMBER"; }
+std::string shown(const std::vector<double>& values) {
+  return "NUMBER[,NUMBER..]" +
+         (values.empty() ? "" : " [" + joined(values, ",", number_text) + "]");
 }
 
 }  // namespace
 
-Option CommandParser::option(const std::string& name, int& value, const std::string& what) {
-  return wrapped(number(app_->add_option(name, value, what)));
+Option CommandParser::wrapped(CLI::Option* option, const Values& values) const {
+  Option one(option, words_);
+  values.set(one);
+  return one;
 }
 
-Option CommandParser::option(const std::string& name, double& value, const std::string& what) {
-  return wrapped(number(app_->add_option(name, value, what)));
-}
-
-Option CommandParser::option(const std::string& name, std::string& value, const std::string& what) {
-  return wrapped(cli::text(app_->add_option(name, value, what)));
-}
-
-Option CommandParser::option(const std::string& name, std::optional<double>& value,
+template <class Variable>
+Option CommandParser::option(const std::string& name, Variable& value, const Values& values,
                              const std::string& what) {
-  return wrapped(number(app_->add_option(name, value, what)));
+  CLI::Option* const option = app_->add_option(name, value, what);
+  if constexpr (std::is_same_v<Variable, std::string> ||
+                std::is_same_v<Variable, std::vector<std::string>>) {
+    // Nothing is what a script passes whose variable is not set: it must not count as not given.
+    option->check(CLI::Validator(
+        [](const std::string& given) {
+          return given.empty() ? std::string("must not be empty") : std::string();
+        },
+        "", kNotEmpty));
+  } else {
+    option->check(number_that("a number", [](double) { return true; }).name(kAnyNumber));
+    option->option_text(shown(value));
+  }
+  return wrapped(option, values);
 }
 
-Option CommandParser::option(const std::string& name, std::vector<double>& values,
-                             const std::string& what) {
-  return wrapped(number(app_->add_option(name, values, what)));
-}
-
-Option CommandParser::option(const std::string& name, std::vector<std::string>& values,
-                             const std::string& what) {
-  return wrapped(cli::text(app_->add_option(name, values, what)));
-}
+#define BENTAXIS_OPTION_OF(...)                                                      \
+  template Option CommandParser::option(const std::string& name, __VA_ARGS__& value, \
+                                        const Values& values, const std::string& what);
+BENTAXIS_OPTION_OF(int)
+BENTAXIS_OPTION_OF(std::size_t)
+BENTAXIS_OPTION_OF(double)
+BENTAXIS_OPTION_OF(std::optional<double>)
+BENTAXIS_OPTION_OF(std::vector<double>)
+BENTAXIS_OPTION_OF(std::string)
+BENTAXIS_OPTION_OF(std::vector<std::string>)
+#undef BENTAXIS_OPTION_OF
 
 void CommandParser::flag(const std::string& name, bool& value, const std::string& what) {
   app_->add_flag(name, value, what);
+}
+
+// Of words that are replaced by their places.
+Values CommandParser::places_of(const std::vector<std::string>& words, const std::string& text) {
+  return Values(text).completed_with(words).with([words](Option& it) {
+    it.option_->type_name(kChoiceType);
+    it.option_->transform(CLI::Validator(
+        [words](std::string& given) {
+          const auto index = index_of(given, words);
+          if (!index) return refused(given, words);
+          given = *index;
+          return std::string();
+        },
+        ""));
+  });
 }
 
 Option CommandParser::choice_of(const std::string& name, const std::function<void(int)>& set,
                                 const std::vector<std::string>& words, const std::string& what,
                                 const std::string& otherwise) {
   return wrapped(app_->add_option_function<int>(
-                     name, [set](const int& index) { set(index); }, what))
-      .choice(words)
-      .text(CLI::detail::join(words, "|") + " [" + otherwise + "]");
+                     name, [set](const int& index) { set(index); }, what),
+                 places_of(words, CLI::detail::join(words, "|") + " [" + otherwise + "]"));
 }
 
 Option CommandParser::choices_of(const std::string& name,
                                  const std::function<void(const std::vector<int>&)>& set,
                                  const std::vector<std::string>& words, const std::string& what) {
-  return wrapped(app_->add_option_function<std::vector<int>>(name, set, what))
-      .list()
-      .choice(words)
-      .text("NAME[,NAME..] [" + CLI::detail::join(words, ",") + "]");
+  return wrapped(app_->add_option_function<std::vector<int>>(name, set, what),
+                 places_of(words, "NAME[,NAME..] [" + CLI::detail::join(words, ",") + "]").list());
 }
 
 CommandInfo CommandParser::info() const {

@@ -38,38 +38,57 @@ struct CommandInfo {
 /// Words that options are completed with.
 using OptionWords = std::map<const CLI::Option*, std::vector<std::string>>;
 
-/// An option or argument of a command. What is said about it can be chained.
+/// An option or argument of a command.
 class Option {
  public:
   Option(CLI::Option* option, std::shared_ptr<OptionWords> words)
       : option_(option), words_(std::move(words)) {}
 
   Option& required();
-  /// A case file, or the name of a shipped case, which is replaced by its file.
-  Option& case_file();
   /// Its values in the help text, as in "NUMBER [36]".
   Option& text(const std::string& values);
-  Option& list();          ///< values are parted by commas too
-  Option& one_value();     ///< of an option that could take several
-  Option& repeatable();    ///< one value each time it is given; all are kept
-  Option& may_be_empty();  ///< of a text, which otherwise is refused where it is ""
   Option& excludes(const Option& other);
-
-  Option& number_in(double low, double high);       ///< finite, in [low, high]
-  Option& positive_number(double high = HUGE_VAL);  ///< finite, above 0
-  Option& accuracy();                               ///< what Simbody's integrators accept
-  Option& integer_in(int low, int high);            ///< in [low, high]
-  Option& one_of(const std::vector<std::string>& words);
-  Option& completed_with(const std::vector<std::string>& words);  ///< others may be given too
 
  private:
   friend class CommandParser;
-  Option& only(const std::string& range, const std::function<bool(double)>& allowed,
-               bool integer = false);
-  Option& choice(const std::vector<std::string>& words);
-
+  friend class Values;
   CLI::Option* option_;
   std::shared_ptr<OptionWords> words_;
+};
+
+/// What an option takes: which values, and how the help text shows them. A text alone allows any.
+/// Without a text that of the variable is shown, "NUMBER" with its value by then: "NUMBER [36]".
+class Values {
+ public:
+  Values() = default;
+  Values(const char* text) : text_(text) {}
+  Values(std::string text) : text_(std::move(text)) {}
+
+  static Values numbers(double low, double high, const std::string& text = {});  ///< finite
+  static Values positive(const std::string& text = {}, double high = HUGE_VAL);  ///< finite
+  static Values accuracies(const std::string& text = {});  ///< what Simbody's integrators accept
+  static Values integers(int low, int high, const std::string& text = {});
+  static Values words(const std::vector<std::string>& words, const std::string& text);
+  /// A case file, or the name of a shipped case, which is replaced by its file.
+  static Values case_file(const std::string& text);
+
+  Values required() const;
+  Values list() const;          ///< parted by commas too
+  Values one() const;           ///< of a variable that could take several
+  Values repeated() const;      ///< one value each time the option is given; all are kept
+  Values may_be_empty() const;  ///< of a text, which otherwise is refused where it is ""
+  Values completed_with(const std::vector<std::string>& words) const;  ///< others may be given too
+
+ private:
+  friend class CommandParser;
+  using Setting = std::function<void(Option&)>;
+  Values with(Setting setting) const;
+  static Values only(const std::string& range, const std::function<bool(double)>& allowed,
+                     bool integer, const std::string& text);
+  void set(Option& option) const;
+
+  std::string text_;  // empty: the variable's
+  std::vector<Setting> settings_;
 };
 
 /// A command and its options. Variables that options fill must live until the line is parsed; they
@@ -88,12 +107,16 @@ class CommandParser {
   /// Any arguments and options may follow, whatever they are.
   void accept_anything();
 
-  Option option(const std::string& name, int& value, const std::string& what);
-  Option option(const std::string& name, double& value, const std::string& what);
-  Option option(const std::string& name, std::string& value, const std::string& what);
-  Option option(const std::string& name, std::optional<double>& value, const std::string& what);
-  Option option(const std::string& name, std::vector<double>& values, const std::string& what);
-  Option option(const std::string& name, std::vector<std::string>& values, const std::string& what);
+  /// @param value  int, std::size_t, double, std::optional<double>, std::vector<double>,
+  /// std::string
+  ///               or std::vector<std::string>
+  template <class Variable>
+  Option option(const std::string& name, Variable& value, const Values& values,
+                const std::string& what);
+  template <class Variable>
+  Option option(const std::string& name, Variable& value, const std::string& what) {
+    return option(name, value, Values(), what);
+  }
 
   void flag(const std::string& name, bool& value, const std::string& what);
 
@@ -129,7 +152,8 @@ class CommandParser {
   Option choices_of(const std::string& name,
                     const std::function<void(const std::vector<int>&)>& set,
                     const std::vector<std::string>& words, const std::string& what);
-  Option wrapped(CLI::Option* option) const { return {option, words_}; }
+  Option wrapped(CLI::Option* option, const Values& values) const;
+  static Values places_of(const std::vector<std::string>& words, const std::string& text);
 
   CLI::App* app_;
   std::shared_ptr<OptionWords> words_;

@@ -23,9 +23,7 @@ struct Command {
   std::function<int()> run;  ///< returns the exit status
 };
 
-/// A command that the first program (scripts/compare_default_pump) lists without having it.
-Command add_further_command(CommandParser program, const std::string& name);
-
+// The first program (scripts/compare_default_pump) has some of these only as names: see there.
 Command add_run_command(CommandParser program);
 Command add_blocktorque_command(CommandParser program);
 Command add_calibrate_command(CommandParser program);

@@ -2,9 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <memory>
-#include <optional>
 
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/csv.h"
@@ -14,14 +11,9 @@
 #include "bentaxis/study/comparison_document.h"
 #include "bentaxis/study/engine_comparison.h"
 #include "bentaxis/study/timing.h"
-#include "commands.h"
+#include "command_tools.h"
 #include "compare_parts.h"
-#include "console.h"
-#include "data_folder.h"
-#include "options.h"
-#include "report_files.h"
 #include "result_files.h"
-#include "versions.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -95,13 +87,12 @@ int judge_by_engines(const Case& given, const study::EngineOptions& options,
   const ResultTable analytic = study::run_turn(ready, study::Model::analytic, progress_of);
   const study::EngineComparison engines = options.calls->compare(
       ready, options, analytic, nullptr, study::kDrivenTolerance, progress_of);
-  report::Document document =
-      study::engine_document(engines, refusal.what(), versions(),
-                             study::describe(ready.the_case, progress_of), ready.the_case.name);
+  report::Document document = study::engine_document(
+      engines, refusal.what(), versions(), described(ready.the_case), ready.the_case.name);
   std::vector<TextFile> curves = engine_files(engines);
   curves.emplace_back("analytic.csv", to_csv(analytic));
-  const auto paths = folders.write("report", document, report::curves_of(analytic), curves);
-  print_result(study::engine_text(engines), paths);
+  folders.publish("report", study::engine_text(engines), document, curves,
+                  report::curves_of(analytic));
   std::fprintf(stderr, "bentaxis: %s\n", refusal.what());
   say_failures(engines);
   return engines.agrees() ? kComputationFailed : kOutOfTolerance;
@@ -188,10 +179,8 @@ int compare(const CompareOptions& options) {
     known = how_well.text + "\n";
   }
   const report::Rows rows = folders.has_figures() ? report::Rows::all : report::Rows::shown;
-  const auto paths =
-      folders.write("report", document, study::comparison_curves(result, document, rows), curves);
-
-  print_result(study::comparison_text(result) + known, paths);
+  folders.publish("report", study::comparison_text(result) + known, document, curves,
+                  study::comparison_curves(result, document, rows));
   const bool all_ran = !result.engines || say_failures(*result.engines);
   if (!result.passes()) return kOutOfTolerance;
   return all_ran ? kDone : kComputationFailed;
@@ -201,64 +190,48 @@ int compare(const CompareOptions& options) {
 
 Command add_compare_command(CommandParser program) {
   auto options = std::make_shared<CompareOptions>();
-  CommandParser command =
-      program.subcommand("compare", "Run both models and report their differences");
+  auto command = program.subcommand("compare", "Run both models and report their differences");
   add_case(command, options->the_case);
   add_report(command, options->place, "report.html, report.json and the curves");
-  command
-      .option("--tolerance", options->tolerance,
-              "largest difference over a reaction's peak that counts as agreement")
-      .positive_number()
-      .text("NUMBER [1e-9 driven, 100 x accuracy integrated]");
+  command.option("--tolerance", options->tolerance,
+                 Values::positive("NUMBER [1e-9 driven, 100 x accuracy integrated]"),
+                 "largest difference over a reaction's peak that counts as agreement");
   options->choice.add_to(command, true);
-  command
-      .option("--analytic", options->analytic,
-              "assumption of the analytic model: piston_friction=on|off, "
-              "inertia=lumped|real|dynamically_equivalent, gear=mesh|imposed, "
-              "flank_shape=involute|octoid, " +
-                  all_transfers() + "; overrides the case file")
-      .text("KEY=VALUE ..");
-  command.option("--multibody", options->multibody, "the same for the multibody model")
-      .text("KEY=VALUE ..");
-  command
-      .option("--multibody-case", options->multibody_case,
-              "give the multibody model another case, changed by --set alike: shows the effect of "
-              "a wrong input")
-      .case_file()
-      .text("CASE");
-  command
-      .option("--with", options->with,
-              "reference directory whose curves are compared with both models; exit status 1 where "
-              "one differs by more than its tolerance")
-      .text("FOLDER");
-  command
-      .option("--engine", options->engines.names,
-              "run engines of others too: exit status 1 where one differs by more than its "
-              "tolerance, 3 where one cannot be run")
-      .list()
-      .completed_with(engine_names())
-      .text("NAME[,NAME..]");
+  command.option("--analytic", options->analytic, "KEY=VALUE ..",
+                 "assumption of the analytic model: piston_friction=on|off, "
+                 "inertia=lumped|real|dynamically_equivalent, gear=mesh|imposed, "
+                 "flank_shape=involute|octoid, " +
+                     all_transfers() + "; overrides the case file");
+  command.option("--multibody", options->multibody, "KEY=VALUE ..",
+                 "the same for the multibody model");
+  command.option(
+      "--multibody-case", options->multibody_case, Values::case_file("CASE"),
+      "give the multibody model another case, changed by --set alike: shows the effect of a wrong "
+      "input");
+  command.option(
+      "--with", options->with, "FOLDER",
+      "reference directory whose curves are compared with both models; exit status 1 where one "
+      "differs by more than its tolerance");
+  command.option(
+      "--engine", options->engines.names,
+      Values("NAME[,NAME..]").list().completed_with(engine_names()),
+      "run engines of others too: exit status 1 where one differs by more than its tolerance, 3 "
+      "where one cannot be run");
   command.choice("--engine-way", options->engines.way, {"given", "integrated"},
                  "given: inverse dynamics at given motion; integrated: by the engine's own "
                  "integrator and constraints");
-  command
-      .option("--engine-steps", options->engine_steps,
-              "steps per turn of engines that integrate; best a multiple of the samples")
-      .integer_in(36, 1'000'000)
-      .text(fmt::format("NUMBER [{}]", study::kEngineSteps));
-  command
-      .option("--engine-setting", options->engines.settings,
-              "a setting of an engine that integrates, mujoco.time_constant=1; docs/engines.md "
-              "lists them")
-      .text("ENGINE.NAME=VALUE ..");
+  command.option("--engine-steps", options->engine_steps,
+                 Values::integers(36, 1'000'000, fmt::format("NUMBER [{}]", study::kEngineSteps)),
+                 "steps per turn of engines that integrate; best a multiple of the samples");
+  command.option(
+      "--engine-setting", options->engines.settings, "ENGINE.NAME=VALUE ..",
+      "a setting of an engine that integrates, mujoco.time_constant=1; docs/engines.md lists them");
   command.flag("--engine-sweep", options->engines.sweep,
                "time against error of the engines, integrated: every step, every setting");
-  command
-      .option("--uncertainty", options->uncertainty,
-              "samples of the parameters in [uncertainty]: bands on the curves, and how well the "
-              "errors against printed numbers and --with are known; 0: none")
-      .integer_in(0, 10'000'000)
-      .text("NUMBER [0]");
+  command.option(
+      "--uncertainty", options->uncertainty, Values::integers(0, 10'000'000),
+      "samples of the parameters in [uncertainty]: bands on the curves, and how well the "
+      "errors against printed numbers and --with are known; 0: none");
   return {command, [options] { return compare(*options); }};
 }
 

@@ -1,10 +1,5 @@
 // bentaxis completion: the Tab key.
-#include <cstdio>
-#include <memory>
-#include <string>
-#include <vector>
-
-#include "commands.h"
+#include "command_tools.h"
 #include "completion.h"
 
 namespace bentaxis::cli {
@@ -21,20 +16,15 @@ struct CompletionOptions {
 
 Command add_completion_command(CommandParser program) {
   auto options = std::make_shared<CompletionOptions>();
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "completion", "Print the script for completion of commands, options and values in a shell");
   std::vector<std::string> shells = completed_shells();
   shells.emplace_back(kWords);
-  command
-      .option(
-          "shell", options->shell,
-          "the shell whose script to print; words: what can follow after --, as the scripts ask")
-      .required()
-      .one_of(shells)
-      .text("bash|zsh|fish|words");
-  command.option("typed", options->typed, "words: the command line so far")
-      .may_be_empty()
-      .text("-- WORD..");
+  command.option(
+      "shell", options->shell, Values::words(shells, "bash|zsh|fish|words").required(),
+      "the shell whose script to print; words: what can follow after --, as the scripts ask");
+  command.option("typed", options->typed, Values("-- WORD..").may_be_empty(),
+                 "words: the command line so far");
   return {command, [options, program] {
             const std::string text = options->shell == kWords
                                          ? completion_text(complete(program.info(), options->typed))

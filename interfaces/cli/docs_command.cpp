@@ -2,16 +2,10 @@
 #include <spawn.h>
 #include <sys/wait.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <memory>
-#include <optional>
-#include <string>
 
-#include "bentaxis/pump/error.h"
-#include "commands.h"
-#include "data_folder.h"
+#include "command_tools.h"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX declares it nowhere
 
@@ -62,7 +56,7 @@ int docs(bool only_print) {
 }  // namespace
 
 Command add_docs_command(CommandParser program) {
-  CommandParser command =
+  auto command =
       program.subcommand("docs", "Open the documentation in the browser and print its path");
   const auto only_print = std::make_shared<bool>(false);
   command.flag("--print", *only_print, "print the path only");

@@ -1,15 +1,8 @@
 #include <cmath>
-#include <memory>
 
-#include "bentaxis/pump/error.h"
 #include "bentaxis/study/fig34_document.h"
-#include "commands.h"
-#include "console.h"
-#include "data_folder.h"
-#include "options.h"
-#include "report_files.h"
+#include "command_tools.h"
 #include "shipped_cases.h"
-#include "versions.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -44,12 +37,10 @@ int run(Fig34CommandOptions& options) {
   const Case as_read = options.the_case.read();
   ReportFolders folders(options.place);
   const study::Fig34Study result = study::run_fig34_study(as_read, study, progress_of);
-  const auto paths = folders.write(
-      "fig34",
-      study::fig34_document(result, versions(), study::describe(result.the_case, progress_of)), {},
-      {{"fig34.csv", study::fig34_csv(result)},
-       {"fig34_curves.csv", study::fig34_curves_csv(result)}});
-  print_result(study::fig34_text(result), paths);
+  folders.publish("fig34", study::fig34_text(result),
+                  study::fig34_document(result, versions(), described(result.the_case)),
+                  {{"fig34.csv", study::fig34_csv(result)},
+                   {"fig34_curves.csv", study::fig34_curves_csv(result)}});
   return kDone;
 }
 
@@ -57,37 +48,28 @@ int run(Fig34CommandOptions& options) {
 
 Command add_fig34_command(CommandParser program) {
   auto options = std::make_shared<Fig34CommandOptions>();
-  CommandParser command = program.subcommand(
+  study::Fig34Options& study = options->study;
+  auto command = program.subcommand(
       "fig34", "Contact laws of teeth that are consistent with the paper's Fig. 34");
   add_case(command, options->the_case, "bap63_rated");
   add_report(command, options->place, "fig34.html, fig34.json and the tables");
-  command.option("--exponents", options->study.exponents, "exponents of the contact law")
-      .list()
-      .number_in(1, 3)
-      .text("NUMBER[,NUMBER..] [1,1.5,2.2]");
-  command.option("--approaches-um", options->approaches_um, "approach of the flanks at 100 N")
-      .list()
-      .text("NUMBER[,NUMBER..] [0.5,5,43.3]");
-  command.option("--backlashes-um", options->backlashes_um, "backlash along the line of action")
-      .list()
-      .text("NUMBER[,NUMBER..] [0,20,50]");
-  command.option("--dissipations", options->study.dissipations, "dissipation of the law, s/m")
-      .list()
-      .number_in(0, 1000)
-      .text("NUMBER[,NUMBER..] [0.05,0.5,5,50]");
-  command.option("--block-inertias-kg-mm2", options->block_inertias, "axial inertia of the block")
-      .list()
-      .text("NUMBER[,NUMBER..] [1000,1500,2000]");
-  command
-      .option("--turns-left-out", options->study.turns_left_out,
-              "turns after the start that do not count")
-      .integer_in(0, 1000)
-      .text("NUMBER [2]");
-  command
-      .option("--windows", options->study.windows,
-              "windows of two turns each; where they differ, the motion does not repeat")
-      .integer_in(1, 1000)
-      .text("NUMBER [3]");
+  const auto list = [](const std::string& usual) {
+    return Values("NUMBER[,NUMBER..] [" + usual + "]").list();
+  };
+  command.option("--exponents", study.exponents, Values::numbers(1, 3).list(),
+                 "exponents of the contact law");
+  command.option("--approaches-um", options->approaches_um, list("0.5,5,43.3"),
+                 "approach of the flanks at 100 N");
+  command.option("--backlashes-um", options->backlashes_um, list("0,20,50"),
+                 "backlash along the line of action");
+  command.option("--dissipations", study.dissipations, Values::numbers(0, 1000).list(),
+                 "dissipation of the law, s/m");
+  command.option("--block-inertias-kg-mm2", options->block_inertias, list("1000,1500,2000"),
+                 "axial inertia of the block");
+  command.option("--turns-left-out", study.turns_left_out, Values::integers(0, 1000),
+                 "turns after the start that do not count");
+  command.option("--windows", study.windows, Values::integers(1, 1000),
+                 "windows of two turns each; where they differ, the motion does not repeat");
   return {command, [options] { return run(*options); }};
 }
 

@@ -15,13 +15,38 @@ namespace {
   throw InputError(what + " is not built yet: run scripts/build (it takes some minutes)");
 }
 
-}  // namespace
-
-Command add_further_command(CommandParser program, const std::string& name) {
-  CommandParser command = program.subcommand(name, "(not built yet: scripts/build)");
+Command not_built(CommandParser program, const std::string& name) {
+  auto command = program.subcommand(name, "(not built yet: scripts/build)");
   command.accept_anything();
   return {command, [name]() -> int { refuse(name); }};
 }
+
+}  // namespace
+
+Command add_blocktorque_command(CommandParser it) { return not_built(it, "blocktorque"); }
+Command add_calibrate_command(CommandParser it) { return not_built(it, "calibrate"); }
+Command add_fig34_command(CommandParser it) { return not_built(it, "fig34"); }
+Command add_fmu_command(CommandParser it) { return not_built(it, "fmu"); }
+Command add_hardcases_command(CommandParser it) { return not_built(it, "hardcases"); }
+Command add_identify_command(CommandParser it) { return not_built(it, "identify"); }
+Command add_inertia_command(CommandParser it) { return not_built(it, "inertia"); }
+Command add_init_command(CommandParser it) { return not_built(it, "init"); }
+Command add_life_command(CommandParser it) { return not_built(it, "life"); }
+Command add_merge_command(CommandParser it) { return not_built(it, "merge"); }
+Command add_optimise_command(CommandParser it) { return not_built(it, "optimise"); }
+Command add_outputs_command(CommandParser it) { return not_built(it, "outputs"); }
+Command add_paper_command(CommandParser it) { return not_built(it, "paper"); }
+Command add_pressure_command(CommandParser it) { return not_built(it, "pressure"); }
+Command add_problems_command(CommandParser it) { return not_built(it, "problems"); }
+Command add_rattle_command(CommandParser it) { return not_built(it, "rattle"); }
+Command add_reference_command(CommandParser it) { return not_built(it, "reference"); }
+Command add_regress_command(CommandParser it) { return not_built(it, "regress"); }
+Command add_score_command(CommandParser it) { return not_built(it, "score"); }
+Command add_sensitivity_command(CommandParser it) { return not_built(it, "sensitivity"); }
+Command add_simulate_command(CommandParser it) { return not_built(it, "simulate"); }
+Command add_sweep_command(CommandParser it) { return not_built(it, "sweep"); }
+Command add_tradeoff_command(CommandParser it) { return not_built(it, "tradeoff"); }
+Command add_uncertainty_command(CommandParser it) { return not_built(it, "uncertainty"); }
 
 void require_whole_program(const std::string& option) { refuse(option); }
 

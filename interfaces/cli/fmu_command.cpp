@@ -1,16 +1,10 @@
 // bentaxis fmu: a case as a unit for system simulators.
 #include <filesystem>
 #include <iostream>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/fmu/unit.h"
-#include "bentaxis/pump/error.h"
-#include "commands.h"
-#include "data_folder.h"
-#include "options.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -95,42 +89,33 @@ int make_unit(FmuOptions& options) {
 
 Command add_fmu_command(CommandParser program) {
   auto options = std::make_shared<FmuOptions>();
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "fmu", "Write the pump of a case as a Functional Mock-up Unit for system simulators");
   add_case(command, options->the_case);
-  command
-      .option("--out", options->out,
-              "where results are written; the FMU, whose directory is made where missing")
-      .required()
-      .text("FILE.fmu");
-  command.option("--fmi", options->version, "version of the standard")
-      .one_of({"2", "3"})
-      .text("2|3 [2]");
-  command
-      .option("--drive", options->drive,
-              "what turns the shaft: inputs for its speed and acceleration, an input for its "
-              "torque, or [drive] of the case")
-      .one_of({"speed", "torque", "case"})
-      .text("speed|torque|case [speed; case where its [drive] is a torque or a motor]");
-  command
-      .option("--output-units", options->outputs,
-              "units of the outputs: those of the columns of simulate (deg, rpm, mm, bar, l/min), "
-              "or of the SI (rad, rad/s, m, Pa, m3/s); names end in them")
-      .one_of({"columns", "si"})
-      .text("columns|si [columns]");
+  command.option("--out", options->out, Values("FILE.fmu").required(),
+                 "where results are written; the FMU, whose directory is made where missing");
+  command.option("--fmi", options->version, Values::words({"2", "3"}, "2|3 [2]"),
+                 "version of the standard");
+  command.option(
+      "--drive", options->drive,
+      Values::words({"speed", "torque", "case"},
+                    "speed|torque|case [speed; case where its [drive] is a torque or a motor]"),
+      "what turns the shaft: inputs for its speed and acceleration, an input for its torque, or "
+      "[drive] of the case");
+  command.option("--output-units", options->outputs,
+                 Values::words({"columns", "si"}, "columns|si [columns]"),
+                 "units of the outputs: those of the columns of simulate (deg, rpm, mm, bar, "
+                 "l/min), or of the "
+                 "SI (rad, rad/s, m, Pa, m3/s); names end in them");
   command
       .choices("--platforms", options->platforms, fmu::platform_names(),
                "whose libraries are in the FMU")
       .text("x86_64-linux,x86_64-windows,aarch64-linux [all that are installed]");
   command.flag("--sources", options->unit.sources,
                "also pack the C++ sources of the library, for other platforms (--fmi 3)");
-  command
-      .option(
-          "--accuracy", options->unit.tolerance,
-          "relative accuracy per step of the time integrator; of co-simulation, relative to the "
-          "scale of each state")
-      .number_in(1e-13, 1e-3)
-      .text("NUMBER [1e-9]");
+  command.option("--accuracy", options->unit.tolerance, Values::numbers(1e-13, 1e-3),
+                 "relative accuracy per step of the time integrator; of co-simulation, relative to "
+                 "the scale of each state");
   return {command, [options] { return make_unit(*options); }};
 }
 

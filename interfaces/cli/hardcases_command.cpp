@@ -1,15 +1,6 @@
-#include <cstdio>
-#include <memory>
-
-#include "bentaxis/pump/error.h"
 #include "bentaxis/study/hard_cases_document.h"
 #include "bentaxis/study/piece_progress.h"
-#include "commands.h"
-#include "console.h"
-#include "data_folder.h"
-#include "options.h"
-#include "report_files.h"
-#include "versions.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -43,7 +34,7 @@ int run(const HardcasesOptions& options) {
                                    {{"hardcases.csv", study::hard_cases_csv(result)},
                                     {"hardcases.md", study::hard_cases_markdown(result)}});
   std::printf("%s", study::hard_cases_text(result).c_str());
-  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  print_files(paths);
   return result.good() ? kDone : kOutOfTolerance;
 }
 
@@ -51,20 +42,16 @@ int run(const HardcasesOptions& options) {
 
 Command add_hardcases_command(CommandParser program) {
   auto options = std::make_shared<HardcasesOptions>();
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "hardcases", "Run the catalogue of hard cases: digits achieved and predicted, refusals");
   add_out(command, options->out, "hardcases.html, .json, .csv and .md");
-  command.option("--filter", options->filter, "only cases whose name contains this text")
-      .text("TEXT");
-  command
-      .option("--turns", options->turns,
-              "turns of the shaft that are evaluated; of the integrated run. 0 leaves it out, as "
-              "--filter does")
-      .integer_in(0, 100000)
-      .text("NUMBER [20]");
-  command
-      .option("--catalogue", options->catalogue, "folder with another catalogue.toml and its cases")
-      .text("DIR");
+  command.option("--filter", options->filter, "TEXT", "only cases whose name contains this text");
+  command.option(
+      "--turns", options->turns, Values::integers(0, 100000),
+      "turns of the shaft that are evaluated; of the integrated run. 0 leaves it out, as "
+      "--filter does");
+  command.option("--catalogue", options->catalogue, "DIR",
+                 "folder with another catalogue.toml and its cases");
   return {command, [options] { return run(*options); }};
 }
 

@@ -1,19 +1,13 @@
 // bentaxis index: one page over a folder of reports.
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
-#include <memory>
-#include <string>
 #include <system_error>
-#include <utility>
-#include <vector>
 
 #include "bentaxis/files/input_file.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/characters.h"
-#include "bentaxis/pump/error.h"
 #include "bentaxis/report/index.h"
-#include "commands.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -166,13 +160,12 @@ int index(const IndexOptions& options) {
 
 Command add_index_command(CommandParser program) {
   auto options = std::make_shared<IndexOptions>();
-  CommandParser command =
+  auto command =
       program.subcommand("index", "One page over all reports below a folder, the worst first");
-  command.option("DIR", options->folder, "directory with reports in its subdirectories").required();
-  command
-      .option("--out", options->out,
-              "where results are written; directory for index.html and index.json")
-      .text("DIR [DIR]");
+  command.option("DIR", options->folder, Values().required(),
+                 "directory with reports in its subdirectories");
+  command.option("--out", options->out, "DIR [DIR]",
+                 "where results are written; directory for index.html and index.json");
   return {command, [options] { return index(*options); }};
 }
 

@@ -1,19 +1,10 @@
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <optional>
-#include <utility>
 
-#include "bentaxis/pump/error.h"
 #include "bentaxis/study/failed_points.h"
 #include "bentaxis/study/inertia_document.h"
 #include "bentaxis/study/published_section.h"
-#include "commands.h"
-#include "console.h"
-#include "data_folder.h"
-#include "options.h"
-#include "report_files.h"
-#include "versions.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -42,14 +33,14 @@ int run(const InertiaCommandOptions& options) {
                                 {study::facts_of(result.the_case, result.the_case.analytic)});
   std::optional<compare::PublishedSection> judged;
   if (published) judged = study::judge_inertia(result, published->numbers);
-  study::InertiaReport report = study::inertia_report(
-      result, std::move(judged), versions(), study::describe(result.the_case, progress_of));
+  study::InertiaReport report =
+      study::inertia_report(result, std::move(judged), versions(), described(result.the_case));
   study::add_warnings(report.document, result.failed);
-  const auto paths = folders.write("inertia", report.document, report.curves,
-                                   {{"inertia.csv", study::inertia_curves_csv(result)},
-                                    {"inertia_errors.csv", study::inertia_errors_csv(result)},
-                                    {"inertia_map.csv", study::inertia_map_csv(result.map)}});
-  print_result(study::inertia_text(result), paths);
+  folders.publish("inertia", study::inertia_text(result), report.document,
+                  {{"inertia.csv", study::inertia_curves_csv(result)},
+                   {"inertia_errors.csv", study::inertia_errors_csv(result)},
+                   {"inertia_map.csv", study::inertia_map_csv(result.map)}},
+                  report.curves);
   return status_of_series(result.agrees() ? kDone : kOutOfTolerance, result.failed,
                           options.study.speeds.size());
 }
@@ -58,22 +49,20 @@ int run(const InertiaCommandOptions& options) {
 
 Command add_inertia_command(CommandParser program) {
   auto options = std::make_shared<InertiaCommandOptions>();
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "inertia", "Error of the reactions from treating the pistons as two point masses");
   add_case(command, options->the_case);
   add_report(command, options->place, "inertia.html, inertia.json and the curves");
   add_values(command, "--speeds", options->speeds, "shaft speeds, rpm", "1500,2350");
   command.choice("--map", options->study.map_axis, {"mass", "length"},
                  "what increases along the map besides the speed: the piston's mass or its length");
-  command.option("--map-speeds", options->map_speeds, "range of speed of the map, rpm")
-      .list()
-      .text("FROM,TO [slowest / 3, 3 x fastest]");
-  command.option("--map-factors", options->map_factors, "range of the factor on mass or length")
-      .list()
-      .text("FROM,TO [0.25,8]");
-  command.option("--map-size", options->study.map_size, "values along each side of the map")
-      .integer_in(2, 100)
-      .text("NUMBER [30]");
+  command.option("--map-speeds", options->map_speeds,
+                 Values("FROM,TO [slowest / 3, 3 x fastest]").list(),
+                 "range of speed of the map, rpm");
+  command.option("--map-factors", options->map_factors, Values("FROM,TO [0.25,8]").list(),
+                 "range of the factor on mass or length");
+  command.option("--map-size", options->study.map_size, Values::integers(2, 100),
+                 "values along each side of the map");
   return {command, [options] {
             study::InertiaOptions& study = options->study;
             if (!options->speeds.empty())

@@ -1,12 +1,5 @@
-#include <cstdio>
-#include <memory>
-#include <string>
-
 #include "bentaxis/study/project.h"
-#include "commands.h"
-#include "console.h"
-#include "data_folder.h"
-#include "options.h"
+#include "command_tools.h"
 #include "shipped_cases.h"
 
 namespace bentaxis::cli {
@@ -36,18 +29,16 @@ int init(const InitOptions& options) {
 
 Command add_init_command(CommandParser program) {
   auto options = std::make_shared<InitOptions>();
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "init", "Write a project: a case, a reference made from it, job files for CI, a README");
-  command.option("dir", options->folder, "new folder").required().text("DIR");
-  command
-      .option("--case", options->the_case.file,
-              "case file (TOML), or the name of a shipped case (bentaxis cases)")
-      .case_file()
-      .text("CASE [bap63_rated]");
+  command.option("dir", options->folder, Values("DIR").required(), "new folder");
+  command.option("--case", options->the_case.file, Values::case_file("CASE [bap63_rated]"),
+                 "case file (TOML), or the name of a shipped case (bentaxis cases)");
   add_changes(command, options->the_case);
-  command.option("--ci", options->ci, "for which CI systems a job file is written")
-      .one_of({"both", "github", "gitlab", "none"})
-      .text("both|github|gitlab|none [both]");
+  command.option(
+      "--ci", options->ci,
+      Values::words({"both", "github", "gitlab", "none"}, "both|github|gitlab|none [both]"),
+      "for which CI systems a job file is written");
   return {command, [options] { return init(*options); }};
 }
 

@@ -1,12 +1,5 @@
-#include <memory>
-#include <string>
-
 #include "bentaxis/designs/life_document.h"
-#include "commands.h"
-#include "console.h"
-#include "options.h"
-#include "report_files.h"
-#include "versions.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -25,12 +18,10 @@ int life(const LifeOptions& options) {
   study::require_ratings(the_case);
   ReportFolders folders(options.place);
   const designs::LifeStudy result = designs::life_study(the_case, duty, progress_of);
-  const auto paths = folders.write(
-      "life",
-      designs::life_document(result, versions(), study::describe(result.the_case, progress_of)), {},
-      {{"life.csv", designs::life_csv(result)},
-       {"life_loads.csv", designs::life_loads_csv(result)}});
-  print_result(designs::life_text(result), paths);
+  folders.publish("life", designs::life_text(result),
+                  designs::life_document(result, versions(), described(result.the_case)),
+                  {{"life.csv", designs::life_csv(result)},
+                   {"life_loads.csv", designs::life_loads_csv(result)}});
   return status_of_series(result.agrees() ? kDone : kOutOfTolerance, result.failed,
                           duty.rows.size());
 }
@@ -39,14 +30,12 @@ int life(const LifeOptions& options) {
 
 Command add_life_command(CommandParser program) {
   auto options = std::make_shared<LifeOptions>();
-  CommandParser command =
+  auto command =
       program.subcommand("life", "Rating life of the bearings after ISO 281, by both models");
   add_case(command, options->the_case);
   add_report(command, options->place, "life.html, life.json, life.csv and life_loads.csv");
-  command
-      .option("--duty", options->duty,
-              "CSV: share of the time, and parameters such as speed_rpm,delivery_bar")
-      .text("FILE");
+  command.option("--duty", options->duty, "FILE",
+                 "CSV: share of the time, and parameters such as speed_rpm,delivery_bar");
   return {command, [options] { return life(*options); }};
 }
 

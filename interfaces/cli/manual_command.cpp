@@ -1,10 +1,7 @@
 // bentaxis manual: the manual page, from what the parser knows.
 #include <fmt/format.h>
 
-#include <cstdio>
-#include <string>
-
-#include "commands.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -81,8 +78,7 @@ std::string manual(const CommandInfo& program, const std::string& footer) {
 }  // namespace
 
 Command add_manual_command(CommandParser program) {
-  CommandParser command =
-      program.subcommand("manual", "Print the manual page: bentaxis manual | man -l -");
+  auto command = program.subcommand("manual", "Print the manual page: bentaxis manual | man -l -");
   return {command, [program] {
             std::fputs(manual(program.info(), program.footer()).c_str(), stdout);
             return kDone;

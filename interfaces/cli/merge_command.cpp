@@ -1,12 +1,7 @@
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
 
-#include "bentaxis/pump/error.h"
-#include "commands.h"
+#include "command_tools.h"
 #include "sweep_options.h"
 
 namespace bentaxis::cli {
@@ -51,9 +46,10 @@ int merge(const MergeOptions& options) {
 
 Command add_merge_command(CommandParser program) {
   auto options = std::make_shared<MergeOptions>();
-  CommandParser command =
+  auto command =
       program.subcommand("merge", "Results of a sweep that was computed in parts (sweep --part)");
-  command.option("OUT", options->place.out, "folder of the parts and of the results").required();
+  command.option("OUT", options->place.out, Values().required(),
+                 "folder of the parts and of the results");
   command.option("FOLDER", options->folders, "further folders with parts, from elsewhere");
   add_figures(command, options->place.figures);
   add_formats(command, options->formats);

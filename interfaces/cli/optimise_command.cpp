@@ -1,20 +1,10 @@
-#include <cstdio>
-#include <memory>
-#include <optional>
-#include <string>
 #include <tuple>
-#include <vector>
 
 #include "bentaxis/designs/optimise_document.h"
-#include "bentaxis/files/case_file.h"
-#include "bentaxis/pump/error.h"
-#include "commands.h"
-#include "console.h"
-#include "options.h"
+#include "bentaxis/pump/lists.h"
+#include "command_tools.h"
 #include "ranks.h"
-#include "report_files.h"
 #include "sweep_options.h"
-#include "versions.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -24,7 +14,7 @@ struct OptimiseOptions {
   ReportPlace place;
   std::vector<std::string> vary;
   std::string study, conditions;
-  int population = 64, generations = 50, restarts = 2, seed = 1, threads = 0, samples = 100;
+  int threads = 0;
   bool no_refinement = false, resume = false;
   designs::OptimiseRequest request;
 };
@@ -32,30 +22,31 @@ struct OptimiseOptions {
 designs::OptimiseRequest request_of(const OptimiseOptions& options, const CommandParser& command) {
   designs::OptimiseRequest request;
   if (!options.study.empty()) request = designs::read_optimise_request(options.study);
-  const auto varied = varied_of(options.vary);
-  for (const auto& one : varied)
-    std::erase_if(request.vary, [&](const auto& old) { return old.first == one.first; });
-  const auto append = [](auto& to, const auto& more) {
-    to.insert(to.end(), more.begin(), more.end());
-  };
-  append(request.vary, varied);
-  append(request.minimise, options.request.minimise);
-  append(request.maximise, options.request.maximise);
-  append(request.outputs, options.request.outputs);
-  append(request.subject_to, options.request.subject_to);
+  const designs::OptimiseRequest& given = options.request;
+  vary_anew(request.vary, options.vary);
+  append(request.minimise, given.minimise);
+  append(request.maximise, given.maximise);
+  append(request.outputs, given.outputs);
+  append(request.subject_to, given.subject_to);
   if (!options.conditions.empty()) request.conditions = options.conditions;
-  if (command.given("--model")) request.model = options.request.model;
+  const auto take = [&](const char* name, auto& to, const auto& value) {
+    if (command.given(name)) to = value;
+  };
   designs::SearchOptions& search = request.search;
-  for (const auto& [name, value, to] :
-       {std::tuple{"--population", options.population, &search.population},
-        {"--generations", options.generations, &search.generations},
-        {"--restarts", options.restarts, &search.restarts}})
-    if (command.given(name)) *to = static_cast<std::size_t>(value);
-  if (command.given("--samples")) request.samples = static_cast<std::size_t>(options.samples);
-  if (command.given("--comparison")) request.comparison = options.request.comparison;
-  if (command.given("--seed")) search.seed = static_cast<std::uint64_t>(options.seed);
+  take("--model", request.model, given.model);
+  take("--population", search.population, given.search.population);
+  take("--generations", search.generations, given.search.generations);
+  take("--restarts", search.restarts, given.search.restarts);
+  take("--samples", request.samples, given.samples);
+  take("--comparison", request.comparison, given.comparison);
+  take("--seed", search.seed, given.search.seed);
   if (options.no_refinement) search.refine = false;
   return request;
+}
+
+// " and 3 single designs", where there are any.
+std::string and_singles(std::size_t count) {
+  return count > 0 ? " and " + std::to_string(count) + " single designs" : "";
 }
 
 int optimise(const OptimiseOptions& options, const CommandParser& command, const Ranks& ranks) {
@@ -64,8 +55,7 @@ int optimise(const OptimiseOptions& options, const CommandParser& command, const
         "optimise: this program was built without pagmo and NLopt; install libpagmo-dev and "
         "libnlopt-cxx-dev (scripts/setup full) and build again");
   const bool first = ranks.rank() == 0;
-  const Case base =
-      first ? options.the_case.read() : read_case(options.the_case.file, options.the_case.changes);
+  const Case base = base_of(options.the_case, ranks);
   const designs::Optimiser optimiser(base,
                                      designs::optimise_plan(request_of(options, command), base));
   const designs::SweepParts parts(parts_in(options.place.out),
@@ -79,7 +69,7 @@ int optimise(const OptimiseOptions& options, const CommandParser& command, const
   }
   ranks.wait();
   designs::OptimiseWork work;
-  work.threads = ranks.size() > 1 && options.threads == 0 ? 1 : options.threads;
+  work.threads = threads_of(ranks, options.threads);
   work.parts = &parts;
   work.resume = options.resume;
   work.rank = static_cast<std::size_t>(ranks.rank());
@@ -88,12 +78,9 @@ int optimise(const OptimiseOptions& options, const CommandParser& command, const
   const auto say_kept = [&] {
     if (!first) return;
     if (const std::size_t kept = parts.count(); kept > 0) {
-      const std::size_t singles = parts.count_singles();
-      std::fprintf(
-          stderr, "bentaxis: %zu of %zu batches%s are in %s: --resume goes on from them\n", kept,
-          optimiser.batches(),
-          singles > 0 ? (" and " + std::to_string(singles) + " single designs").c_str() : "",
-          parts.folder().c_str());
+      std::fprintf(stderr, "bentaxis: %zu of %zu batches%s are in %s: --resume goes on from them\n",
+                   kept, optimiser.batches(), and_singles(parts.count_singles()).c_str(),
+                   parts.folder().c_str());
     } else
       parts.remove(0);
   };
@@ -102,15 +89,12 @@ int optimise(const OptimiseOptions& options, const CommandParser& command, const
     if (!first) return kDone;
     if (options.resume)
       std::fprintf(stderr, "bentaxis: %zu batches%s were there already\n", found.kept,
-                   found.kept_singles > 0
-                       ? (" and " + std::to_string(found.kept_singles) + " single designs").c_str()
-                       : "");
+                   and_singles(found.kept_singles).c_str());
     std::vector<TextFile> files = text_files(designs::chosen_cases(found));
     files.emplace_back("front.csv", designs::front_csv(found));
     files.emplace_back("evaluations.csv", designs::evaluations_csv(found));
     const auto paths = folders->write(
-        "report", designs::optimise_document(found, versions(), study::describe(base, progress_of)),
-        {}, files);
+        "report", designs::optimise_document(found, versions(), described(base)), {}, files);
     parts.remove(optimiser.batches());
     std::string text = designs::headline(found);
     for (const std::string& answer : designs::optimise_answers(found)) text += "\n" + answer;
@@ -130,63 +114,41 @@ int optimise(const OptimiseOptions& options, const CommandParser& command, const
 
 Command add_optimise_command(CommandParser program) {
   auto options = std::make_shared<OptimiseOptions>();
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "optimise", "Find the best designs: objectives, constraints, any parameters");
   if (designs::search_libraries().empty()) command.lacks("pagmo and NLopt");
   add_case(command, options->the_case);
   add_report(command, options->place,
              "report.html, report.json, front.csv, evaluations.csv and chosen_N.toml");
-  command
-      .option("--vary", options->vary, "parameter that varies; with its range, or a list of values")
-      .repeatable()
-      .text("NAME=FROM:TO");
-  const std::string names = "NAME[,NAME..]";
+  command.option("--vary", options->vary, Values("NAME=FROM:TO").repeated(),
+                 "parameter that varies; with its range, or a list of values");
   designs::OptimiseRequest& request = options->request;
-  command.option("--minimise", request.minimise, "outputs to minimise; see bentaxis outputs")
-      .list()
-      .text(names);
-  command.option("--maximise", request.maximise, "outputs to maximise").list().text(names);
-  command
-      .option("--subject-to", request.subject_to,
-              "what every design must keep, as \"timing.backflow.excess <= 0\"")
-      .repeatable()
-      .text("\"NAME <= NUMBER\"");
-  command
-      .option("--output", request.outputs, "outputs to compute; besides objectives and constraints")
-      .list()
-      .text(names);
-  command
-      .option("--conditions", options->conditions,
-              "CSV: operating points with their share of the time, as a duty cycle of life")
-      .text("FILE");
-  command
-      .option("--study", options->study,
-              "study file; it holds the same as the options, which add to it")
-      .text("FILE");
-  command.option("--population", options->population, "designs evaluated at once, a multiple of 4")
-      .integer_in(8, designs::kMaxPopulation)
-      .text("NUMBER [64]");
-  command.option("--generations", options->generations, "of each search, after the first")
-      .integer_in(0, designs::kMaxGenerations)
-      .text("NUMBER [50]");
-  command.option("--restarts", options->restarts, "searches, each from points of its own")
-      .integer_in(1, designs::kMaxRestarts)
-      .text("NUMBER [2]");
-  command
-      .option("--seed", options->seed,
-              "seed of the random number generator; of the first search, the next ones count on")
-      .integer_in(0, 2147483647)
-      .text("NUMBER [1]");
-  command
-      .option(
-          "--samples", options->samples,
-          "number of samples that are drawn; of [uncertainty], for each quantile of each design")
-      .integer_in(1, designs::kMaxSamples)
-      .text("NUMBER [100]");
+  command.option("--minimise", request.minimise, kNames,
+                 "outputs to minimise; see bentaxis outputs");
+  command.option("--maximise", request.maximise, kNames, "outputs to maximise");
+  command.option("--subject-to", request.subject_to, Values("\"NAME <= NUMBER\"").repeated(),
+                 "what every design must keep, as \"timing.backflow.excess <= 0\"");
+  command.option("--output", request.outputs, kNames,
+                 "outputs to compute; besides objectives and constraints");
+  command.option("--conditions", options->conditions, "FILE",
+                 "CSV: operating points with their share of the time, as a duty cycle of life");
+  command.option("--study", options->study, "FILE",
+                 "study file; it holds the same as the options, which add to it");
+  designs::SearchOptions& search = request.search;
+  command.option("--population", search.population, Values::integers(8, designs::kMaxPopulation),
+                 "designs evaluated at once, a multiple of 4");
+  command.option("--generations", search.generations, Values::integers(0, designs::kMaxGenerations),
+                 "of each search, after the first");
+  command.option("--restarts", search.restarts, Values::integers(1, designs::kMaxRestarts),
+                 "searches, each from points of its own");
+  add_seed(command, search.seed, "of the first search, the next ones count on");
+  command.option(
+      "--samples", request.samples, Values::integers(1, designs::kMaxSamples),
+      "number of samples that are drawn; of [uncertainty], for each quantile of each design");
   command.choice("--comparison", request.comparison, {"fast", "yes", "no"},
                  "random and grid search with as many designs beside it: fast: where designs are "
                  "evaluated by the closed form");
-  command.choice("--model", request.model, {"analytic", "multibody"}, "model that computes");
+  add_model(command, request.model);
   command.flag("--no-refinement", options->no_refinement,
                "leave out the improvement of the best designs by gradients");
   command.flag("--resume", options->resume,

@@ -54,38 +54,31 @@ void CaseOption::refuse_timing(const std::vector<report::Warning>& timing) const
 }
 
 void add_case(CommandParser command, CaseOption& the_case, const std::string& otherwise) {
-  Option file = command.option("case", the_case.file,
-                               "case file (TOML), or the name of a shipped case (bentaxis cases)");
-  file.case_file();
-  if (otherwise.empty())
-    file.required().text("CASE");
-  else
-    file.text("CASE [" + otherwise + "]");
+  command.option("case", the_case.file,
+                 otherwise.empty() ? Values::case_file("CASE").required()
+                                   : Values::case_file("CASE [" + otherwise + "]"),
+                 "case file (TOML), or the name of a shipped case (bentaxis cases)");
   add_changes(command, the_case);
 }
 
 void add_changes(CommandParser command, CaseOption& the_case) {
-  command
-      .option("--set", the_case.changes,
-              "change a key of the case, as if its file said so; can be given again")
-      .repeatable()
-      .completed_with(changeable_keys())
-      .text("TABLE.KEY=VALUE");
+  command.option("--set", the_case.changes,
+                 Values("TABLE.KEY=VALUE").repeated().completed_with(changeable_keys()),
+                 "change a key of the case, as if its file said so; can be given again");
   command.flag("--strict", the_case.strict, "plausibility warnings are errors: exit status 2");
 }
 
 void add_out(CommandParser command, std::string& folder, const std::string& what) {
-  command
-      .option("--out", folder,
-              "where results are written; directory for " + what + ", made where missing")
-      .text(folder.empty() ? "DIR" : "DIR [" + folder + "]");
+  command.option("--out", folder, folder.empty() ? "DIR" : "DIR [" + folder + "]",
+                 "where results are written; directory for " + what + ", made where missing");
 }
 
 Option add_values(CommandParser command, const std::string& name, std::string& text,
                   const std::string& what, const std::string& otherwise) {
-  return command.option(name, text, what)
-      .text("NUMBER[,NUMBER..]|FROM:TO:STEP|FROM:TO:#N" +
-            (otherwise.empty() ? "" : " [" + otherwise + "]"));
+  return command.option(name, text,
+                        "NUMBER[,NUMBER..]|FROM:TO:STEP|FROM:TO:#N" +
+                            (otherwise.empty() ? "" : " [" + otherwise + "]"),
+                        what);
 }
 
 namespace {
@@ -126,9 +119,16 @@ std::vector<double> values_in(const std::string& name, const std::string& text,
 }
 
 void add_threads(CommandParser command, int& threads, const std::string& what) {
-  command.option("--threads", threads, "threads that compute; " + what)
-      .integer_in(0, 1024)
-      .text("NUMBER [0]");
+  command.option("--threads", threads, Values::integers(0, 1024), "threads that compute; " + what);
+}
+
+void add_seed(CommandParser command, std::uint64_t& seed, const std::string& what, int high) {
+  command.option("--seed", seed, Values::integers(0, high),
+                 "seed of the random number generator; " + what);
+}
+
+Option add_model(CommandParser command, study::Model& model) {
+  return command.choice("--model", model, {"analytic", "multibody"}, "model that computes");
 }
 
 void add_integrators(CommandParser command, std::vector<multibody::Integrator>& integrators) {
@@ -146,33 +146,24 @@ void RunChoice::add_to(CommandParser command, bool several) {
   command.choice("--reactions", method_, multibody::method_names(),
                  "multibody, driven: by forward dynamics and its multipliers, or by inverse "
                  "dynamics (faster; serves massless pistons too)");
-  command
-      .option("--channels", channels_,
-              "only these: quantities (Rs) or columns (Rs_1_z2_N); without --scene the "
-              "smallest scene that computes them is built")
-      .list()
-      .completed_with(study::quantity_names())
-      .text("NAME[,NAME..] [all]");
+  command.option("--channels", channels_,
+                 Values("NAME[,NAME..] [all]").list().completed_with(study::quantity_names()),
+                 "only these: quantities (Rs) or columns (Rs_1_z2_N); without --scene the smallest "
+                 "scene that computes them is built");
   command.choice("--integrator", integration.integrator, multibody::integrator_names(),
                  "time integrator of Simbody; of an integrated run");
-  Option accuracy =
+  const Option accuracy =
       command.option("--accuracy", accuracies,
+                     several ? Values::accuracies("NUMBER[,NUMBER..] [1e-4,1e-6]").list()
+                             : Values::accuracies("NUMBER [1e-6]").one(),
                      std::string("relative accuracy per step of the time integrator; ") +
-                         (several ? "of an integrated run; all are tabled, the last "
-                                    "is compared"
+                         (several ? "of an integrated run; all are tabled, the last is compared"
                                   : "of an integrated run"));
-  accuracy.accuracy();
-  if (several)
-    accuracy.list().text("NUMBER[,NUMBER..] [1e-4,1e-6]");
-  else
-    accuracy.one_value().text("NUMBER [1e-6]");
   command
-      .option("--error", error_,
+      .option("--error", error_, Values::numbers(1e-11, 0.1, "NUMBER"),
               "wanted error of every reaction, relative to its peak; of an integrated run: a short "
               "calibration chooses integrator and accuracy, and the error is verified")
-      .number_in(1e-11, 0.1)
-      .excludes(accuracy)
-      .text("NUMBER");
+      .excludes(accuracy);
 }
 
 void RunChoice::refuse_without_effect(bool multibody, bool states) const {

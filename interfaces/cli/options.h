@@ -1,6 +1,7 @@
 // Options that several commands share.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,9 @@
 #include "command_parser.h"
 
 namespace bentaxis::cli {
+
+/// Names of outputs, of parameters.
+inline const Values kNames = Values("NAME[,NAME..]").list();
 
 /// The case of a command, and what is changed in it.
 struct CaseOption {
@@ -45,6 +49,11 @@ std::vector<double> values_in(const std::string& name, const std::string& text,
                               const std::string& unit, double least);
 /// --threads. @param what  goes on behind its meaning
 void add_threads(CommandParser command, int& threads, const std::string& what);
+/// --seed, at most `high`. @param what  likewise
+void add_seed(CommandParser command, std::uint64_t& seed, const std::string& what,
+              int high = 2147483647);
+/// --model, one of both.
+Option add_model(CommandParser command, study::Model& model);
 /// A list of integrators; empty where not given.
 void add_integrators(CommandParser command, std::vector<multibody::Integrator>& integrators);
 

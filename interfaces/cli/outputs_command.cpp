@@ -2,14 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "bentaxis/designs/output.h"
-#include "commands.h"
-#include "options.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -44,10 +39,10 @@ int outputs(const CaseOption& option) {
 
 Command add_outputs_command(CommandParser program) {
   auto the_case = std::make_shared<CaseOption>();
-  CommandParser command = program.subcommand("outputs",
-                                             "List the numbers that sweep, optimise, sensitivity "
-                                             "and uncertainty can be asked for (--output), with "
-                                             "units and meanings");
+  auto command = program.subcommand("outputs",
+                                    "List the numbers that sweep, optimise, sensitivity "
+                                    "and uncertainty can be asked for (--output), with "
+                                    "units and meanings");
   add_case(command, *the_case);
   return {command, [the_case] { return outputs(*the_case); }};
 }

@@ -1,14 +1,6 @@
 // bentaxis paper: the curves and drawings of the paper as one page.
-#include <cstdio>
-#include <memory>
-
-#include "bentaxis/pump/error.h"
 #include "bentaxis/study/paper_figures.h"
-#include "commands.h"
-#include "console.h"
-#include "data_folder.h"
-#include "report_files.h"
-#include "versions.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -27,12 +19,9 @@ int paper(const PaperOptions& options) {
   ReportFolders folders(options.place);
   const study::PaperStudy result =
       study::run_paper_study(list, data->parent_path() / "cases", progress_of);
-  const auto paths = folders.write(
-      "paper",
-      study::paper_document(result, versions(), study::describe(result.cases.front(), progress_of)),
-      {}, {{"paper.csv", study::paper_csv(result)}});
-  std::printf("%s\n", study::paper_text(result).c_str());
-  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  folders.publish("paper", study::paper_text(result),
+                  study::paper_document(result, versions(), described(result.cases.front())),
+                  {{"paper.csv", study::paper_csv(result)}});
   return kDone;
 }
 
@@ -40,13 +29,11 @@ int paper(const PaperOptions& options) {
 
 Command add_paper_command(CommandParser program) {
   auto options = std::make_shared<PaperOptions>();
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "paper", "The paper's curves and drawings by both models, in its printed axes");
   add_report(command, options->place, "paper.html, paper.json and paper.csv");
-  command
-      .option("--list", options->list,
-              "another list of figures, beside the printed numbers that it names")
-      .text("FILE [the shipped figures.toml]");
+  command.option("--list", options->list, "FILE [the shipped figures.toml]",
+                 "another list of figures, beside the printed numbers that it names");
   return {command, [options] { return paper(*options); }};
 }
 

@@ -1,10 +1,6 @@
-#include <memory>
-#include <optional>
-
 #include "bentaxis/designs/timing_advice_section.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/csv.h"
-#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/derived_displacement.h"
@@ -12,11 +8,7 @@
 #include "bentaxis/study/operating_points.h"
 #include "bentaxis/study/pressure_document.h"
 #include "bentaxis/study/spaced_values.h"
-#include "commands.h"
-#include "console.h"
-#include "options.h"
-#include "report_files.h"
-#include "versions.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -94,8 +86,8 @@ int pressure(const PressureOptions& options) {
 
   const study::OperatingPoint point = study::run_point(std::move(read), progress_of);
   const auto power = hydraulics::power_by_place(point.state(), progress_of("power by place"));
-  report::Document document = study::pressure_document(
-      point, power, versions(), study::describe(point.the_case(), progress_of));
+  report::Document document =
+      study::pressure_document(point, power, versions(), described(point.the_case()));
   // A limit on the pressure alone does not say whether the chambers fill.
   if (options.suction_speed == kFilling || (limit && point.state().timing.filled))
     study::add_suction_speed(document, point,
@@ -132,14 +124,12 @@ int pressure(const PressureOptions& options) {
     study::add_transient(document, transient);
     curves.emplace_back("transient.csv", to_csv(transient));
   }
-  const auto paths = folders.write("pressure", document,
-                                   report::curves_of(point.analytic, point.multibody), curves);
-
   std::string text = study::pressure_text(point, power, document);
   if (published) text += "\n" + study::text_of(document.published->section);
   if (displacement) text += "\n" + study::displacement_text(*displacement);
   if (curve) text += "\n" + torque_curve_text(*curve);
-  print_result(text, paths);
+  folders.publish("pressure", text, document, curves,
+                  report::curves_of(point.analytic, point.multibody));
   const bool held = !published || document.published->section.calibrated();
   int status = held ? kDone : kOutOfTolerance;
   if (displacement) status = status_of_series(status, displacement->failed, displacement->asked);
@@ -150,46 +140,37 @@ int pressure(const PressureOptions& options) {
 
 Command add_pressure_command(CommandParser program) {
   auto options = std::make_shared<PressureOptions>();
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "pressure", "Compute chamber and delivery pressures, flows and the torque they need");
   add_case(command, options->the_case);
   add_report(command, options->place, "pressure.html, pressure.json and the curves");
   add_values(command, "--delivery-bar", options->delivery,
              "delivery pressures, bar; also mean torque and flow at these. 0 is an open line");
-  command
-      .option("--overlay", options->overlay,
-              "another hydraulic case, drawn into one figure with the first over three turns")
-      .case_file()
-      .text("CASE");
-  command
-      .option("--published", options->published,
-              "printed numbers to set the results against; a calibrated one outside: exit status 1")
-      .text("FILE");
-  command
-      .option("--suction-speed", options->suction_speed,
-              "also the largest speed at which the chambers fill (at most 1 % of a stroke lost). "
-              "With another word also the largest speed at which no chamber falls below that "
-              "pressure: dissolved air is released (saturation), oil boils (vapour), or the given "
-              "gauge pressure in bar. 10 to 30 operating points each")
-      .text("filling|saturation|vapour|BAR");
+  command.option("--overlay", options->overlay, Values::case_file("CASE"),
+                 "another hydraulic case, drawn into one figure with the first over three turns");
+  command.option(
+      "--published", options->published, "FILE",
+      "printed numbers to set the results against; a calibrated one outside: exit status 1");
+  command.option(
+      "--suction-speed", options->suction_speed, "filling|saturation|vapour|BAR",
+      "also the largest speed at which the chambers fill (at most 1 % of a stroke lost). With "
+      "another word also the largest speed at which no chamber falls below that pressure: "
+      "dissolved "
+      "air is released (saturation), oil boils (vapour), or the given gauge pressure in bar. 10 to "
+      "30 operating points each");
   command.flag("--advise", options->advise,
                "also which key to change, and by how much, for each port timing quantity that "
                "exceeds its limit: some 70 operating points");
   command.flag("--derived-displacement", options->derived_displacement,
                "also the displacement as test rigs derive it from flows (ISO 8426, Toet, Wilson, "
                "zero-pressure line) against the geometric one: a test of 30 operating points");
-  command
-      .option("--test-speeds", options->test_speeds,
-              "its speeds, in rpm; without it five from a fifth to the whole of the case's")
-      .text("FROM:TO:STEP|FROM:TO:#N");
-  command
-      .option("--test-pressures", options->test_pressures,
-              "its delivery pressures, in bar; without it six from 5 to 100 % of the case's")
-      .text("FROM:TO:STEP|FROM:TO:#N");
-  command
-      .option("--transient", options->transient, "also the transient from rest over so many turns")
-      .integer_in(1, 1000)
-      .text("TURNS");
+  const Values range = "FROM:TO:STEP|FROM:TO:#N";
+  command.option("--test-speeds", options->test_speeds, range,
+                 "its speeds, in rpm; without it five from a fifth to the whole of the case's");
+  command.option("--test-pressures", options->test_pressures, range,
+                 "its delivery pressures, in bar; without it six from 5 to 100 % of the case's");
+  command.option("--transient", options->transient, Values::integers(1, 1000, "TURNS"),
+                 "also the transient from rest over so many turns");
   return {command, [options] { return pressure(*options); }};
 }
 

@@ -1,9 +1,4 @@
-#include <cstdio>
-#include <memory>
-
-#include "bentaxis/pump/error.h"
-#include "commands.h"
-#include "data_folder.h"
+#include "command_tools.h"
 #include "score_files.h"
 
 namespace bentaxis::cli {
@@ -30,7 +25,7 @@ int list_problems(bool json) {
 
 Command add_problems_command(CommandParser program) {
   const auto json = std::make_shared<bool>(false);
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "problems", "List the problems of the problem set, which `score` compares results with");
   command.flag("--json", *json, "print JSON instead of text");
   return {command, [json] { return list_problems(*json); }};

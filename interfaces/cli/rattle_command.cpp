@@ -1,20 +1,11 @@
-#include <cstdio>
 #include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/files/run_lock.h"
-#include "bentaxis/pump/error.h"
 #include "bentaxis/study/rattle_document.h"
 #include "bentaxis/study/rattle_file.h"
-#include "commands.h"
-#include "console.h"
-#include "options.h"
-#include "report_files.h"
-#include "versions.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -67,10 +58,9 @@ int rattle(const RattleCommandOptions& options) {
   std::vector<std::filesystem::path> paths;
   try {
     map = study::rattle_map(the_case, rattle, keeping, progress_of);
-    paths = folders.write(
-        "report",
-        study::rattle_document(map, versions(), study::describe(map.the_case, progress_of)), {},
-        {{"rattle.csv", study::rattle_csv(map)}});
+    paths =
+        folders.write("report", study::rattle_document(map, versions(), described(map.the_case)),
+                      {}, {{"rattle.csv", study::rattle_csv(map)}});
   } catch (const Interrupted&) {
     if (file.rows() > 0) {
       say_kept("interrupted; ");
@@ -98,37 +88,26 @@ int rattle(const RattleCommandOptions& options) {
 
 Command add_rattle_command(CommandParser program) {
   auto options = std::make_shared<RattleCommandOptions>();
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "rattle",
       "Map of gear or piston contact: loaded, reversing, out of contact, impacts on both sides");
   add_case(command, options->the_case);
   add_report(command, options->place, "report.html, report.json and rattle.csv");
   add_values(command, "--speeds", options->speeds, "shaft speeds, rpm").required();
   add_values(command, "--delivery-bar", options->delivery, "delivery pressures, bar").required();
-  study::RattleOptions& rattle_options = options->rattle;
-  command
-      .option(
-          "--turns", rattle_options.turns,
-          "turns of the shaft that are evaluated; at a point whose motion does not repeat itself")
-      .integer_in(1, 10000)
-      .text("NUMBER [10]");
-  command.option("--discard", rattle_options.discard, "turns before those of --turns, at most")
-      .integer_in(0, 10000)
-      .text("NUMBER [10]");
-  command
-      .option(
-          "--error", rattle_options.error,
-          "wanted error of every reaction, relative to its peak; here of the tooth force, where no "
-          "impact amplifies it")
-      .number_in(1e-8, 1e-2)
-      .text("NUMBER [1e-3]");
-  command
-      .option("--check-points", rattle_options.check,
-              "number of points, spread over the classes, that Simbody computes too")
-      .integer_in(0, 10000)
-      .text("NUMBER [0]");
-  add_threads(command, rattle_options.threads,
-              "one row each, at most one per processor; 0: as many");
+  study::RattleOptions& map = options->rattle;
+  command.option(
+      "--turns", map.turns, Values::integers(1, 10000),
+      "turns of the shaft that are evaluated; at a point whose motion does not repeat itself");
+  command.option("--discard", map.discard, Values::integers(0, 10000),
+                 "turns before those of --turns, at most");
+  command.option(
+      "--error", map.error, Values::numbers(1e-8, 1e-2, "NUMBER [1e-3]"),
+      "wanted error of every reaction, relative to its peak; here of the tooth force, where no "
+      "impact amplifies it");
+  command.option("--check-points", map.check, Values::integers(0, 10000),
+                 "number of points, spread over the classes, that Simbody computes too");
+  add_threads(command, map.threads, "one row each, at most one per processor; 0: as many");
   command.flag("--resume", options->resume,
                "continue an interrupted run; with the rows that it has left in the directory");
   return {command, [options] { return rattle(*options); }};

@@ -1,17 +1,11 @@
-#include <cstdio>
 #include <filesystem>
-#include <memory>
-#include <optional>
 
 #include "bentaxis/files/input_file.h"
 #include "bentaxis/files/kept_case.h"
 #include "bentaxis/files/whole_file.h"
-#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/lists.h"
 #include "bentaxis/study/reference_maker.h"
-#include "commands.h"
-#include "console.h"
-#include "options.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -64,16 +58,14 @@ int make_new(const ReferenceOptions& options) {
   const auto paths = study::make_reference(the_case, changed, options.from, description, out,
                                            options.mapping, progress_of);
   std::printf("%s", proposals.c_str());
-  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  print_files(paths);
   std::printf("now: bentaxis regress %s\n", out.c_str());
   return kDone;
 }
 
 int make_golden(const ReferenceOptions& options) {
-  for (const auto& path :
-       study::make_golden(options.the_case.read(), !options.the_case.changes.empty(),
-                          options.samples, options.out, progress_of))
-    std::printf("%s\n", path.c_str());
+  print_files(study::make_golden(options.the_case.read(), !options.the_case.changes.empty(),
+                                 options.samples, options.out, progress_of));
   return kDone;
 }
 
@@ -105,44 +97,38 @@ int update(const ReferenceOptions& options) {
 
 Command add_reference_command(CommandParser program) {
   auto options = std::make_shared<ReferenceOptions>();
-  CommandParser command =
+  auto command =
       program.subcommand("reference", "Make reference data for regress, and update golden curves");
   command.require_subcommand();
-  CommandParser make = command.subcommand(
+  auto make = command.subcommand(
       "new", "Folder for a record of another tool or a rig, with a guess at what its columns are");
   add_case(make, options->the_case);
-  make.option("--from", options->from, "the record: text, ADAMS table or request file, .xlsx, .mat")
-      .required()
-      .text("FILE");
-  make.option("--sheet", options->sheet, "sheet of a workbook, variable of a MATLAB file")
-      .text("NAME [the first with a table]");
+  make.option("--from", options->from, Values("FILE").required(),
+              "the record: text, ADAMS table or request file, .xlsx, .mat");
+  make.option("--sheet", options->sheet, "NAME [the first with a table]",
+              "sheet of a workbook, variable of a MATLAB file");
   auto mapping =
-      make.option("--mapping", options->mapping,
-                  "what the columns are: a proposal of this command, confirmed or edited")
-          .text("FILE.toml");
+      make.option("--mapping", options->mapping, "FILE.toml",
+                  "what the columns are: a proposal of this command, confirmed or edited");
   make.flag("--accept", options->accept, "take the guess as it is");
-  make.option("--source", options->source, "which tool or rig, which version, who, when")
-      .text("TEXT")
+  make.option("--source", options->source, "TEXT", "which tool or rig, which version, who, when")
       .excludes(mapping);
   make.option("--tolerance", options->tolerance,
+              Values::positive("NUMBER [what the digits of the file allow]", 1),
               "largest difference over a reaction's peak that counts as agreement")
-      .positive_number(1)
-      .text("NUMBER [what the digits of the file allow]")
       .excludes(mapping);
-  make.option("--out", options->out, "where results are written; new directory")
-      .text("DIR [reference_CASE]");
-  CommandParser golden = command.subcommand(
+  make.option("--out", options->out, "DIR [reference_CASE]",
+              "where results are written; new directory");
+  auto golden = command.subcommand(
       "golden", "Folder with the curves that both models give today, to detect changes");
   add_case(golden, options->the_case);
-  golden.option("--angles", options->samples, "angles per turn at which results are taken")
-      .integer_in(3, 100000)
-      .text("NUMBER [36]");
-  golden.option("--out", options->out, "where results are written; new directory")
-      .required()
-      .text("DIR");
-  CommandParser renew = command.subcommand(
+  golden.option("--angles", options->samples, Values::integers(3, 100000),
+                "angles per turn at which results are taken");
+  golden.option("--out", options->out, Values("DIR").required(),
+                "where results are written; new directory");
+  auto renew = command.subcommand(
       "update", "Rewrite golden curves and say what changed; never touches other data");
-  renew.option("dir", options->folder, "folder with references").required().text("DIR");
+  renew.option("dir", options->folder, Values("DIR").required(), "folder with references");
   const std::string group = "Commands";
   make.place(group, "bentaxis reference new bap63_rated --from record.csv --accept");
   golden.place(group, "bentaxis reference golden bap63_rated --out golden");

@@ -1,24 +1,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <memory>
-#include <optional>
 
 #include "bentaxis/designs/explain.h"
 #include "bentaxis/files/output_folder.h"
-#include "bentaxis/pump/error.h"
 #include "bentaxis/report/page.h"
 #include "bentaxis/study/comparison_answers.h"
 #include "bentaxis/study/piece_progress.h"
 #include "bentaxis/study/regression.h"
 #include "bentaxis/study/regression_document.h"
-#include "commands.h"
-#include "console.h"
-#include "data_folder.h"
+#include "command_tools.h"
 #include "provenance.h"
-#include "report_files.h"
-#include "versions.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -30,19 +22,8 @@ struct RegressOptions {
   ReportPlace place;
 };
 
-ExitStatus status_of(study::Outcome::State state) {
-  switch (state) {
-    case study::Outcome::State::agrees:
-      return kDone;
-    case study::Outcome::State::differs:
-      return kOutOfTolerance;
-    case study::Outcome::State::unusable:
-      return kBadInput;
-    case study::Outcome::State::failed:
-      break;
-  }
-  return kComputationFailed;
-}
+// In the order of study::Outcome::State.
+constexpr ExitStatus kStatuses[] = {kDone, kOutOfTolerance, kBadInput, kComputationFailed};
 
 int regress(const RegressOptions& options) {
   const auto shipped = shipped_reference_data();
@@ -70,7 +51,7 @@ int regress(const RegressOptions& options) {
   for (const auto& place : places) {
     study::Outcome outcome = study::hold(place, part);
     designs::explain(outcome, place, part);
-    status = std::max<int>(status, status_of(outcome.state));
+    status = std::max<int>(status, kStatuses[static_cast<int>(outcome.state)]);
     if (!outcome.error.empty()) {
       whole(1);  // clears the line
       std::fprintf(stderr, "bentaxis: %s: %s\n", outcome.name.c_str(), outcome.error.c_str());
@@ -87,9 +68,7 @@ int regress(const RegressOptions& options) {
     return status;
   const std::string name = fs::absolute(root / ".").parent_path().filename();
   report::Document document = study::regression_document(outcomes, name, versions());
-  if (folders)
-    for (const auto& path : folders->write("report", document, {}, {{"junit.xml", junit}}))
-      std::printf("%s\n", path.c_str());
+  if (folders) print_files(folders->write("report", document, {}, {{"junit.xml", junit}}));
   add_provenance(document);
   for (const std::string& file : {options.html, options.json})
     if (!file.empty()) document.files.push_back(fs::path(file).filename());
@@ -107,23 +86,20 @@ int regress(const RegressOptions& options) {
 
 Command add_regress_command(CommandParser program) {
   auto options = std::make_shared<RegressOptions>();
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "regress", "Compare both models with stored curves: the shipped reference data or your own");
-  command.option("dir", options->folder, "directory with references (default: the shipped set)")
-      .text("[DIR]");
+  command.option("dir", options->folder, "[DIR]",
+                 "directory with references (default: the shipped set)");
   options->place.out.clear();  // nothing is written where it is not given
   add_report(command, options->place, "report.html, report.json and junit.xml");
-  command.option("--junit", options->junit, "write the results as JUnit XML").text("FILE");
-  command
-      .option("--html", options->html,
-              "write a page with the curves that differ and every external curve, over both models")
-      .text("FILE");
-  command
-      .option("--json-file", options->json,
-              "write the same as JSON (docs/report_json.md); beside the page, for `bentaxis index`")
-      .text("FILE");
-  command.option("--filter", options->filter, "only cases whose name contains this text")
-      .text("TEXT");
+  command.option("--junit", options->junit, "FILE", "write the results as JUnit XML");
+  command.option(
+      "--html", options->html, "FILE",
+      "write a page with the curves that differ and every external curve, over both models");
+  command.option(
+      "--json-file", options->json, "FILE",
+      "write the same as JSON (docs/report_json.md); beside the page, for `bentaxis index`");
+  command.option("--filter", options->filter, "TEXT", "only cases whose name contains this text");
   return {command, [options] { return regress(*options); }};
 }
 

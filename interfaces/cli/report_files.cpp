@@ -80,9 +80,19 @@ std::vector<std::filesystem::path> ReportFolders::write(const std::string& name,
   return paths;
 }
 
+void ReportFolders::publish(const std::string& name, const std::string& text,
+                            const report::Document& document, const std::vector<TextFile>& further,
+                            const report::Curves& curves) {
+  print_result(text, write(name, document, curves, further));
+}
+
+void print_files(const std::vector<std::filesystem::path>& files) {
+  for (const std::filesystem::path& file : files) std::printf("%s\n", file.c_str());
+}
+
 void print_result(const std::string& text, const std::vector<std::filesystem::path>& files) {
   std::printf("%s\n", text.c_str());
-  for (const std::filesystem::path& file : files) std::printf("%s\n", file.c_str());
+  print_files(files);
 }
 
 void add_figure_files(OutputFolder& folder, const report::Document& document,

@@ -63,12 +63,17 @@ class ReportFolders {
   std::vector<std::filesystem::path> write(const std::string& name, report::Document document,
                                            const report::Curves& curves,
                                            const std::vector<TextFile>& further);
+  /// The same, and what was found with the paths on standard output.
+  void publish(const std::string& name, const std::string& text, const report::Document& document,
+               const std::vector<TextFile>& further, const report::Curves& curves = {});
 
  private:
   OutputFolder report_;
   std::optional<OutputFolder> figures_;
 };
 
+/// On standard output: a line for each file.
+void print_files(const std::vector<std::filesystem::path>& files);
 /// What a command found, on standard output, and the files that hold it.
 void print_result(const std::string& text, const std::vector<std::filesystem::path>& files);
 

@@ -10,11 +10,9 @@ void add_report(const CommandParser& command, ReportPlace& place, const std::str
 }
 
 void add_figures(CommandParser command, std::string& folder) {
-  command
-      .option("--figures", folder,
-              "also write every figure of the report as SVG, PNG and CSV into this folder, made "
-              "where missing")
-      .text("DIR");
+  command.option("--figures", folder, "DIR",
+                 "also write every figure of the report as SVG, PNG and CSV into this folder, made "
+                 "where missing");
 }
 
 }  // namespace bentaxis::cli

@@ -1,7 +1,3 @@
-#include <cstdio>
-#include <memory>
-#include <string>
-
 #include "bentaxis/files/csv.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/lists.h"
@@ -12,9 +8,7 @@
 #include "bentaxis/study/timing.h"
 #include "bentaxis/study/transfer_summary.h"
 #include "bentaxis/study/turn_summary.h"
-#include "commands.h"
-#include "console.h"
-#include "options.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -38,7 +32,7 @@ int finish(OutputFolder& folder, const std::string& name, const std::vector<std:
   const auto paths = folder.commit();
   std::printf("%s\n", name.c_str());
   for (const std::string& answer : answers) std::printf("%s\n", answer.c_str());
-  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  print_files(paths);
   return kDone;
 }
 
@@ -160,24 +154,17 @@ int run(const RunCommandOptions& options) {
 
 Command add_run_command(CommandParser program) {
   auto options = std::make_shared<RunCommandOptions>();
-  CommandParser command = program.subcommand("run", "Run one model and write its curves as CSV");
+  auto command = program.subcommand("run", "Run one model and write its curves as CSV");
   add_case(command, options->the_case);
-  command.choice("--model", options->model, {"analytic", "multibody"}, "model that computes")
-      .required()
-      .text("analytic|multibody");
+  add_model(command, options->model).required().text("analytic|multibody");
   add_out(command, options->out, "the curves");
-  command
-      .option("--states", options->states,
-              "CSV with the motion of shaft and block, and pressures where it has them: "
-              "reactions there instead of along a turn at constant speed")
-      .text("FILE");
+  command.option("--states", options->states, "FILE",
+                 "CSV with the motion of shaft and block, and pressures where it has them: "
+                 "reactions there instead of along a turn at constant speed");
   options->choice.add_to(command, false);
-  command
-      .option("--gear", options->gear,
-              "tooth force between shaft and block, or block speed imposed; overrides the "
-              "case file")
-      .one_of({"mesh", "imposed"})
-      .text("mesh|imposed [mesh]");
+  command.option(
+      "--gear", options->gear, Values::words({"mesh", "imposed"}, "mesh|imposed [mesh]"),
+      "tooth force between shaft and block, or block speed imposed; overrides the case file");
   return {command, [options] { return run(*options); }};
 }
 

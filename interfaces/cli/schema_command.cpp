@@ -1,24 +1,18 @@
 // bentaxis schema: the format of case files.
-#include <cstdio>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "bentaxis/files/schema.h"
 #include "bentaxis/study/plausibility.h"
-#include "commands.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 
 Command add_schema_command(CommandParser program) {
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "schema", "Print the JSON Schema of case files, for editors that complete and check TOML");
   const auto tables = std::make_shared<std::vector<std::string>>();
-  command
-      .option("--markdown", *tables,
-              "print the keys of these tables as Markdown tables instead (docs/case_file.md); top "
-              "means the keys above all tables, checks the plausibility checks")
-      .text("TABLE..");
+  command.option("--markdown", *tables, "TABLE..",
+                 "print the keys of these tables as Markdown tables instead (docs/case_file.md); "
+                 "top means the "
+                 "keys above all tables, checks the plausibility checks");
   return {command, [tables] {
             std::string text;
             for (const std::string& table : *tables)

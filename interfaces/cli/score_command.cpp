@@ -1,13 +1,7 @@
-#include <cstdio>
-#include <memory>
-#include <optional>
-
 #include "bentaxis/files/whole_file.h"
-#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/words.h"
-#include "commands.h"
-#include "data_folder.h"
+#include "command_tools.h"
 #include "score_files.h"
 
 namespace bentaxis::cli {
@@ -49,30 +43,22 @@ int score(const ScoreOptions& options) {
 
 Command add_score_command(CommandParser program) {
   auto options = std::make_shared<ScoreOptions>();
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "score",
       "Score a table of reactions that any program computed: digits of each column against a "
       "problem of the problem set, and which known mistake a wrong column is");
-  command.option("file", options->file, "table of the results: CSV, Excel, MATLAB or ADAMS")
-      .text("FILE")
-      .required();
+  command.option("file", options->file, Values("FILE").required(),
+                 "table of the results: CSV, Excel, MATLAB or ADAMS");
   std::vector<std::string> names;
   if (const auto folder = shipped_problems()) names = study::problem_names(*folder);
-  command
-      .option("--problem", options->problem,
-              "problem that the table solves: the name of a shipped one, or its folder")
-      .text("NAME|DIR")
-      .required()
-      .completed_with(names);
-  command
-      .option("--tolerance", options->tolerance,
-              "largest difference over a reaction's peak that counts as agreement; default: the "
-              "problem's")
-      .positive_number()
-      .text("NUMBER");
+  command.option("--problem", options->problem, Values("NAME|DIR").required().completed_with(names),
+                 "problem that the table solves: the name of a shipped one, or its folder");
+  command.option("--tolerance", options->tolerance, Values::positive(),
+                 "largest difference over a reaction's peak that counts as agreement; default: the "
+                 "problem's");
   command.flag("--json", options->json, "print JSON instead of text");
-  command.option("--badge", options->badge, "write a badge with the digits, an SVG picture")
-      .text("FILE");
+  command.option("--badge", options->badge, "FILE",
+                 "write a badge with the digits, an SVG picture");
   return {command, [options] { return score(*options); }};
 }
 

@@ -1,16 +1,9 @@
 #include <algorithm>
-#include <cstdio>
-#include <memory>
 
 #include "bentaxis/designs/independence.h"
 #include "bentaxis/designs/sensitivity_document.h"
-#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/lists.h"
-#include "commands.h"
-#include "console.h"
-#include "options.h"
-#include "report_files.h"
-#include "versions.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -52,10 +45,9 @@ int sensitivity(const SensitivityOptions& options) {
   // An interruption that is there already would end the description at once.
   const auto description =
       study::describe(found.base, interrupted ? study::silent() : study::PartProgress(progress_of));
-  const auto paths = folders.write(
-      "sensitivity", designs::sensitivity_document(found, check, versions(), description), {},
-      {{"sensitivity.csv", designs::sensitivity_csv(found, check)}});
-  print_result(designs::sensitivity_text(found, check), paths);
+  folders.publish("sensitivity", designs::sensitivity_text(found, check),
+                  designs::sensitivity_document(found, check, versions(), description),
+                  {{"sensitivity.csv", designs::sensitivity_csv(found, check)}});
   if (interrupted) {
     std::fprintf(stderr, "bentaxis: %s What is finished is written.\n",
                  found.left_out.empty() ? "Interrupted: the check is missing."
@@ -69,22 +61,17 @@ int sensitivity(const SensitivityOptions& options) {
 
 Command add_sensitivity_command(CommandParser program) {
   auto options = std::make_shared<SensitivityOptions>();
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "sensitivity", "Derivatives of any output with respect to any parameter of a case");
   add_case(command, options->the_case);
   add_report(command, options->place, "sensitivity.html, sensitivity.json and sensitivity.csv");
-  command
-      .option("--output", options->outputs,
-              "outputs to compute; their derivatives are found (docs/sweeps.md)")
-      .list()
-      .text("NAME[,NAME..] [Td, bearings, Rs, Rc, pin, film]");
-  command
-      .option("--vary", options->parameters,
-              "parameter that varies; the derivatives are with respect to it. Names as of --set; "
-              "without, every number of the case")
-      .list()
-      .text("NAME[,NAME..]");
-  command.choice("--model", options->model, {"analytic", "multibody"}, "model that computes");
+  command.option("--output", options->outputs,
+                 Values("NAME[,NAME..] [Td, bearings, Rs, Rc, pin, film]").list(),
+                 "outputs to compute; their derivatives are found (docs/sweeps.md)");
+  command.option("--vary", options->parameters, kNames,
+                 "parameter that varies; the derivatives are with respect to it. Names as of "
+                 "--set; without, every number of the case");
+  add_model(command, options->model);
   command.flag("--check-derivatives", options->check,
                "also by differences of the other model; a difference: exit status 1");
   return {command, [options] { return sensitivity(*options); }};

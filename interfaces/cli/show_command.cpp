@@ -1,20 +1,12 @@
 // bentaxis show: the pump of a case, by its dimensions and by the analytic model alone.
-#include <cstdio>
 #include <filesystem>
-#include <memory>
-#include <optional>
-#include <string>
 
 #include "bentaxis/files/csv.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/pump_document.h"
 #include "bentaxis/study/pump_picture.h"
-#include "commands.h"
-#include "console.h"
-#include "options.h"
-#include "report_files.h"
-#include "versions.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -66,9 +58,8 @@ int show(const ShowOptions& options) {
     std::printf("%s\n", commit_figures(*figures).c_str());
     return kDone;
   }
-  for (const fs::path& file :
-       report->write("report", document, curves, {{"analytic.csv", to_csv(pump->run.table)}}))
-    std::printf("%s\n", file.c_str());
+  print_files(
+      report->write("report", document, curves, {{"analytic.csv", to_csv(pump->run.table)}}));
   return kDone;
 }
 
@@ -76,16 +67,14 @@ int show(const ShowOptions& options) {
 
 Command add_show_command(CommandParser program) {
   auto options = std::make_shared<ShowOptions>();
-  CommandParser command =
+  auto command =
       program.subcommand("show",
                          "Describe the pump of a case with its plausibility warnings and draw it "
                          "to scale; with forces by the analytic model only");
   add_case(command, options->the_case);
-  command
-      .option("--out", options->out,
-              "where results are written; the picture, or a directory for a report with forces and "
-              "curves of the analytic model alone")
-      .text("FILE.svg|DIR");
+  command.option("--out", options->out, "FILE.svg|DIR",
+                 "where results are written; the picture, or a directory for a report with forces "
+                 "and curves of the analytic model alone");
   add_figures(command, options->figures);
   return {command, [options] { return show(*options); }};
 }

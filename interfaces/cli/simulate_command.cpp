@@ -1,16 +1,8 @@
-#include <memory>
-#include <string>
-
-#include "bentaxis/pump/error.h"
 #include "bentaxis/results/trajectory.h"
 #include "bentaxis/study/simulation_document.h"
-#include "commands.h"
-#include "console.h"
-#include "options.h"
-#include "report_files.h"
+#include "command_tools.h"
 #include "simulation_files.h"
 #include "unit_option.h"
-#include "versions.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -57,13 +49,11 @@ int simulate(const SimulateOptions& options, const CommandParser& command) {
   ReportFolders folders(options.place);
   const study::SimulationResult result = study::simulate(
       study::prepare_simulation(std::move(read), choice, progress_of), choice, progress_of);
-  const auto paths = folders.write(
-      "report",
-      study::simulation_document(
-          result, versions(),
-          study::describe(result.ready.the_case, progress_of, study::Described::inputs)),
-      study::simulation_curves(result), simulation_files(result));
-  print_result(study::simulation_text(result), paths);
+  folders.publish("report", study::simulation_text(result),
+                  study::simulation_document(result, versions(),
+                                             study::describe(result.ready.the_case, progress_of,
+                                                             study::Described::inputs)),
+                  simulation_files(result), study::simulation_curves(result));
   return result.agrees() ? kDone : kOutOfTolerance;
 }
 
@@ -71,37 +61,30 @@ int simulate(const SimulateOptions& options, const CommandParser& command) {
 
 Command add_simulate_command(CommandParser program) {
   auto options = std::make_shared<SimulateOptions>();
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "simulate",
       "Integrate the motion of shaft and block in time by both models and compare them");
   add_case(command, options->the_case);
   add_report(command, options->place, "report.html, report.json and the curves");
-  command
-      .option("--model", options->model, "model that computes; one alone, nothing is compared then")
-      .one_of({"analytic", "multibody"})
-      .text("analytic|multibody [both]");
-  command
-      .option("--oil", options->oil,
-              "of a hydraulic case: \"coupled\", oil that follows the motion, or \"periodic\", the "
-              "pressure of the constant speed of [operation], one curve for both models")
-      .one_of({"coupled", "periodic"})
-      .text("coupled|periodic [coupled]");
+  command.option("--model", options->model,
+                 Values::words({"analytic", "multibody"}, "analytic|multibody [both]"),
+                 "model that computes; one alone, nothing is compared then");
+  command.option(
+      "--oil", options->oil, Values::words({"coupled", "periodic"}, "coupled|periodic [coupled]"),
+      "of a hydraulic case: \"coupled\", oil that follows the motion, or \"periodic\", the "
+      "pressure of the constant speed of [operation], one curve for both models");
   command.flag("--steady", options->choice.steady,
                "find the periodic motion (period: an N-th of a turn) and its stability, instead of "
                "the motion from the start; rows over one turn");
   options->unit.add_to(command);
-  Option accuracy =
-      command.option("--accuracy", options->choice.accuracy,
-                     "relative accuracy per step of the time integrator; selects --coordinates "
-                     "constraints unless --coordinates is given");
-  accuracy.accuracy().text("NUMBER [found for --error]");
-  command
-      .option(
-          "--error", options->choice.error,
-          "wanted error of every reaction, relative to its peak; both models are integrated to it "
-          "and compared by it")
-      .number_in(1e-10, 0.1)
-      .text("NUMBER [1e-6]");
+  command.option("--accuracy", options->choice.accuracy,
+                 Values::accuracies("NUMBER [found for --error]"),
+                 "relative accuracy per step of the time integrator; selects --coordinates "
+                 "constraints unless --coordinates is given");
+  command.option(
+      "--error", options->choice.error, Values::numbers(1e-10, 0.1),
+      "wanted error of every reaction, relative to its peak; both models are integrated to it and "
+      "compared by it");
   command.choice("--integrator", options->choice.integrator, multibody::integrator_names(),
                  "time integrator of Simbody; selects --coordinates constraints");
   command

@@ -1,19 +1,10 @@
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
 #include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "bentaxis/designs/sweep_tables.h"
-#include "bentaxis/files/case_file.h"
-#include "bentaxis/pump/error.h"
-#include "commands.h"
-#include "console.h"
-#include "options.h"
+#include "command_tools.h"
 #include "ranks.h"
-#include "report_files.h"
 #include "sweep_options.h"
 
 namespace bentaxis::cli {
@@ -33,7 +24,7 @@ designs::SweepShare share_of(const SweepOptions& options, const Ranks& ranks) {
   designs::SweepShare share = options.share;
   share.rank = static_cast<std::size_t>(ranks.rank());
   share.ranks = static_cast<std::size_t>(ranks.size());
-  if (ranks.size() > 1 && share.threads == 0) share.threads = 1;
+  share.threads = threads_of(ranks, share.threads);
   if (options.part.empty()) return share;
   const char* const end = options.part.data() + options.part.size();
   const auto [slash, error] = std::from_chars(options.part.data(), end, share.part);
@@ -52,8 +43,7 @@ int sweep(const SweepOptions& options, const CommandParser& command, const Ranks
   const designs::SweepRequest request = request_of(options.plan, command);
   const designs::SweepShare share = share_of(options, ranks);
   const designs::SweepFormats formats = formats_of(options.formats);
-  const Case base =
-      first ? options.the_case.read() : read_case(options.the_case.file, options.the_case.changes);
+  const Case base = base_of(options.the_case, ranks);
   const designs::Sweep sweep(base, designs::sweep_plan(request, base));
   const designs::SweepParts parts(parts_in(options.place.out),
                                   designs::record_of(sweep, "bentaxis " BENTAXIS_VERSION));
@@ -97,15 +87,15 @@ int sweep(const SweepOptions& options, const CommandParser& command, const Ranks
 
 Command add_sweep_command(CommandParser program) {
   auto options = std::make_shared<SweepOptions>();
-  CommandParser command = program.subcommand(
+  auto command = program.subcommand(
       "sweep",
       "Outputs of many designs: grids and samples of any parameters, on any number of cores");
   add_case(command, options->the_case);
   add_report(command, options->place, "report.html, report.json, sweep.csv and sweep.h5");
   add_plan(command, options->plan);
   add_formats(command, options->formats);
-  command.option("--part", options->part, "compute this part of the blocks only; then merge")
-      .text("I/N");
+  command.option("--part", options->part, "I/N",
+                 "compute this part of the blocks only; then merge");
   command.flag("--resume", options->share.resume,
                "continue an interrupted run; with the blocks that it has left in the directory");
   add_threads(command, options->share.threads, "0: one per processor, one where started by mpirun");

@@ -1,14 +1,10 @@
 #include "sweep_options.h"
 
-#include <cstdio>
-
 #include "bentaxis/designs/sweep_document.h"
-#include "bentaxis/pump/error.h"
+#include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
-#include "commands.h"
-#include "console.h"
-#include "versions.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 
@@ -26,73 +22,58 @@ double check_share(const std::string& text) {
 }  // namespace
 
 void add_plan(CommandParser command, PlanOptions& options) {
-  command.option("--vary", options.vary, "parameter that varies; with its values (docs/sweeps.md)")
-      .repeatable()
-      .text("NAME=VALUES");
-  const std::string names = "NAME[,NAME..]";
-  command
-      .option("--output", options.request.outputs,
-              "outputs to compute; as max:Rb1_z1 (docs/sweeps.md)")
-      .list()
-      .text(names);
-  command.option("--minimise", options.request.minimise, "outputs to minimise").list().text(names);
-  command.option("--maximise", options.request.maximise, "outputs to maximise").list().text(names);
-  command
-      .option("--study", options.study,
-              "study file; it holds the same as the options, which add to it")
-      .text("FILE");
-  command.choice("--sampling", options.request.sampling, designs::sampling_words(),
+  designs::SweepRequest& request = options.request;
+  command.option("--vary", options.vary, Values("NAME=VALUES").repeated(),
+                 "parameter that varies; with its values (docs/sweeps.md)");
+  command.option("--output", request.outputs, kNames,
+                 "outputs to compute; as max:Rb1_z1 (docs/sweeps.md)");
+  command.option("--minimise", request.minimise, kNames, "outputs to minimise");
+  command.option("--maximise", request.maximise, kNames, "outputs to maximise");
+  command.option("--study", options.study, "FILE",
+                 "study file; it holds the same as the options, which add to it");
+  command.choice("--sampling", request.sampling, designs::sampling_words(),
                  "every combination, or points in distributions");
-  command.option("--samples", options.samples, "number of samples that are drawn; not of a grid")
-      .integer_in(1, 1000000000)
-      .text("NUMBER");
-  command
-      .option("--seed", options.seed,
-              "seed of the random number generator; 0: Sobol's sequence as it is")
-      .integer_in(0, 2147483647)
-      .text("NUMBER [1]");
-  command.choice("--model", options.request.model, {"analytic", "multibody"},
-                 "model that computes");
-  command.option("--check", options.check, "share of the designs that the other model computes too")
-      .text("SHARE [0%]");
+  command.option("--samples", request.samples, Values::integers(1, 1000000000, "NUMBER"),
+                 "number of samples that are drawn; not of a grid");
+  add_seed(command, request.seed, "0: Sobol's sequence as it is");
+  add_model(command, request.model);
+  command.option("--check", options.check, "SHARE [0%]",
+                 "share of the designs that the other model computes too");
 }
 
-std::vector<std::pair<std::string, std::string>> varied_of(const std::vector<std::string>& texts) {
-  std::vector<std::pair<std::string, std::string>> varied;
+void vary_anew(Varied& varied, const std::vector<std::string>& texts) {
+  Varied given;
   for (const std::string& text : texts) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos)
       throw InputError("--vary " + text + ": must be NAME=VALUES, as in pump.tilt_deg=20:40:5");
-    varied.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+    given.emplace_back(text.substr(0, equals), text.substr(equals + 1));
   }
-  return varied;
+  for (const auto& one : given)
+    std::erase_if(varied, [&](const auto& old) { return old.first == one.first; });
+  // After those of the file are gone, so that an option given twice is refused as it is there.
+  append(varied, given);
 }
 
 designs::SweepRequest request_of(const PlanOptions& options, const CommandParser& command) {
   designs::SweepRequest request;
   if (!options.study.empty()) request = designs::read_sweep_request(options.study);
   const designs::SweepRequest& given = options.request;
-  const auto varied = varied_of(options.vary);
-  for (const auto& one : varied)
-    std::erase_if(request.vary, [&](const auto& old) { return old.first == one.first; });
-  // After those of the file are gone, so that an option given twice is refused as it is there.
-  append(request.vary, varied);
+  vary_anew(request.vary, options.vary);
   append(request.outputs, given.outputs);
   append(request.minimise, given.minimise);
   append(request.maximise, given.maximise);
   if (command.given("--sampling")) request.sampling = given.sampling;
-  if (command.given("--samples")) request.samples = static_cast<std::size_t>(options.samples);
-  if (command.given("--seed")) request.seed = static_cast<std::uint64_t>(options.seed);
+  if (command.given("--samples")) request.samples = given.samples;
+  if (command.given("--seed")) request.seed = given.seed;
   if (command.given("--model")) request.model = given.model;
   if (!options.check.empty()) request.check_share = check_share(options.check);
   return request;
 }
 
 void add_formats(CommandParser command, std::vector<std::string>& formats) {
-  command.option("--format", formats, "files of results")
-      .list()
-      .one_of({"csv", "hdf5"})
-      .text("csv,hdf5");
+  command.option("--format", formats, Values::words({"csv", "hdf5"}, "csv,hdf5").list(),
+                 "files of results");
 }
 
 designs::SweepFormats formats_of(const std::vector<std::string>& formats) {
@@ -102,6 +83,14 @@ designs::SweepFormats formats_of(const std::vector<std::string>& formats) {
   if (result.hdf5 && !designs::has_hdf5())
     throw InputError("--format hdf5: " + designs::why_no_hdf5());
   return result;
+}
+
+Case base_of(const CaseOption& the_case, const Ranks& ranks) {
+  return ranks.rank() == 0 ? the_case.read() : read_case(the_case.file, the_case.changes);
+}
+
+int threads_of(const Ranks& ranks, int threads) {
+  return ranks.size() > 1 && threads == 0 ? 1 : threads;
 }
 
 std::filesystem::path parts_in(const std::filesystem::path& out) { return out / "sweep.parts"; }
@@ -138,14 +127,12 @@ int write_results(const designs::Sweep& sweep, const designs::SweepParts& parts,
   const designs::SweepResult result = designs::write_sweep(sweep, parts, formats, folders.tables(),
                                                            threads, progress_of("writing"));
   const auto paths = folders.write(
-      "report",
-      designs::sweep_document(result, versions(), study::describe(result.base, progress_of)), {},
-      {});
+      "report", designs::sweep_document(result, versions(), described(result.base)), {}, {});
   std::printf("%s\n", designs::headline(result).c_str());
   for (const std::string& answer : designs::sweep_answers(result))
     std::printf("%s\n", answer.c_str());
   std::printf("%s", designs::disagreements_text(result).c_str());
-  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  print_files(paths);
   return result.agrees() ? kDone : kOutOfTolerance;
 }
 

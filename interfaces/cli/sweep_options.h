@@ -9,6 +9,8 @@
 
 #include "bentaxis/designs/sweep_tables.h"
 #include "command_parser.h"
+#include "options.h"
+#include "ranks.h"
 #include "report_files.h"
 
 namespace bentaxis::cli {
@@ -18,13 +20,14 @@ struct PlanOptions {
   std::string study, check;
   std::vector<std::string> vary;
   designs::SweepRequest request;
-  int samples = 0, seed = 1;
 };
 /// --vary, --output, --minimise, --maximise, --study, --sampling, --samples, --seed, --model,
 /// --check.
 void add_plan(CommandParser command, PlanOptions& options);
-/// NAME=VALUES apart. @throws InputError
-std::vector<std::pair<std::string, std::string>> varied_of(const std::vector<std::string>& texts);
+/// Parameters of a study file with their values, and what --vary says in place of them and besides.
+/// @param texts  NAME=VALUES each. @throws InputError
+using Varied = std::vector<std::pair<std::string, std::string>>;
+void vary_anew(Varied& varied, const std::vector<std::string>& texts);
 /// What the study file says, and the options that were given. @throws InputError
 designs::SweepRequest request_of(const PlanOptions& options, const CommandParser& command);
 
@@ -32,6 +35,11 @@ designs::SweepRequest request_of(const PlanOptions& options, const CommandParser
 void add_formats(CommandParser command, std::vector<std::string>& formats);
 /// Of none: all that this program can write. @throws InputError
 designs::SweepFormats formats_of(const std::vector<std::string>& formats);
+
+/// The case in every rank; the first says what of it is doubtful.
+Case base_of(const CaseOption& the_case, const Ranks& ranks);
+/// Threads of a rank, of those asked for; 0: one where there are several ranks.
+int threads_of(const Ranks& ranks, int threads);
 
 /// Where finished blocks of a sweep to this folder wait.
 std::filesystem::path parts_in(const std::filesystem::path& out);

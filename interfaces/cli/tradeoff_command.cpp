@@ -1,13 +1,8 @@
 #include <algorithm>
-#include <memory>
 
 #include "bentaxis/study/run.h"
 #include "bentaxis/study/tradeoff_document.h"
-#include "commands.h"
-#include "console.h"
-#include "options.h"
-#include "report_files.h"
-#include "versions.h"
+#include "command_tools.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -23,11 +18,9 @@ int tradeoff(const TradeoffCommandOptions& options) {
   ReportFolders folders(options.place);
   const study::TradeoffStudy result =
       study::run_tradeoff_study(the_case, options.tradeoff, progress_of("tradeoff"));
-  const auto paths = folders.write(
-      "tradeoff",
-      study::tradeoff_document(result, versions(), study::describe(result.the_case, progress_of)),
-      {}, {{"tradeoff.csv", study::tradeoff_csv(result)}});
-  print_result(study::tradeoff_text(result), paths);
+  folders.publish("tradeoff", study::tradeoff_text(result),
+                  study::tradeoff_document(result, versions(), described(result.the_case)),
+                  {{"tradeoff.csv", study::tradeoff_csv(result)}});
   return kDone;
 }
 
@@ -35,26 +28,20 @@ int tradeoff(const TradeoffCommandOptions& options) {
 
 Command add_tradeoff_command(CommandParser program) {
   auto options = std::make_shared<TradeoffCommandOptions>();
-  CommandParser command = program.subcommand(
+  study::TradeoffOptions& tradeoff_options = options->tradeoff;
+  auto command = program.subcommand(
       "tradeoff", "Time every model, scene, integrator and accuracy on a case against its error");
   add_case(command, options->the_case);
   add_report(command, options->place, "tradeoff.html, tradeoff.json and tradeoff.csv");
-  study::TradeoffOptions& tradeoff_options = options->tradeoff;
   add_integrators(command, tradeoff_options.integrators);
-  command.option("--accuracies", tradeoff_options.accuracies, "accuracies of integrated runs")
-      .list()
-      .accuracy()
-      .text("NUMBER[,NUMBER..] [1e-2,1e-3,..,1e-10]");
-  command
-      .option("--angles", tradeoff_options.samples_per_revolution,
-              "angles per turn at which results are taken; each ends a step")
-      .integer_in(1, 100000)
-      .text("NUMBER [8 per piston]");
-  command
-      .option("--max-seconds-per-run", tradeoff_options.max_seconds_per_run,
-              "stop an integrated run that takes longer, and try no tighter accuracy")
-      .positive_number()
-      .text("NUMBER [10]");
+  command.option("--accuracies", tradeoff_options.accuracies,
+                 Values::accuracies("NUMBER[,NUMBER..] [1e-2,1e-3,..,1e-10]").list(),
+                 "accuracies of integrated runs");
+  command.option("--angles", tradeoff_options.samples_per_revolution,
+                 Values::integers(1, 100000, "NUMBER [8 per piston]"),
+                 "angles per turn at which results are taken; each ends a step");
+  command.option("--max-seconds-per-run", tradeoff_options.max_seconds_per_run, Values::positive(),
+                 "stop an integrated run that takes longer, and try no tighter accuracy");
   return {command, [options] {
             study::TradeoffOptions& o = options->tradeoff;
             if (o.integrators.empty()) o.integrators = study::all_integrators();

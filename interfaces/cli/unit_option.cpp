@@ -6,35 +6,25 @@
 namespace bentaxis::cli {
 
 void UnitOption::add_to(CommandParser command) {
-  command
-      .option("--fmu", file_,
-              "a drive or load as a Functional Mock-up Unit (FMI 2.0 or 3.0, co-simulation) that "
-              "acts on the pump; each model has its own instance")
-      .text("FILE");
-  command
-      .option("--fmu-set", choice_.parameters,
-              "a parameter of the FMU, in its declared unit of measure")
-      .repeatable()
-      .text("NAME=VALUE");
-  command
-      .option("--connect", choice_.connect,
-              "an input of the pump (A) gets the value of an output of the FMU (B), or an input of "
-              "the FMU (A) that of a column of the CSV files (B). Inputs of the pump: drive_speed, "
-              "drive_acceleration, drive_torque, suction_pressure, delivery_pressure, load_share. "
-              "Equal names are always connected. Where both sides have A and B: pump:A=B or "
-              "fmu:A=B, for the input of the pump or of the FMU")
-      .repeatable()
-      .text("A=B");
-  command
-      .option("--communication-step", choice_.step,
-              "s between the points at which pump and FMU exchange values")
-      .positive_number()
-      .text("SECONDS [that of the FMU, or between rows]");
-  command
-      .option("--fmu-timeout", choice_.limits.call_seconds,
-              "s: the maximum elapsed time of one call of a function of the FMU; 0: no limit")
-      .number_in(0, 1e6)
-      .text("SECONDS [60]");
+  command.option(
+      "--fmu", file_, "FILE",
+      "a drive or load as a Functional Mock-up Unit (FMI 2.0 or 3.0, co-simulation) that acts on "
+      "the pump; each model has its own instance");
+  command.option("--fmu-set", choice_.parameters, Values("NAME=VALUE").repeated(),
+                 "a parameter of the FMU, in its declared unit of measure");
+  command.option(
+      "--connect", choice_.connect, Values("A=B").repeated(),
+      "an input of the pump (A) gets the value of an output of the FMU (B), or an input of the FMU "
+      "(A) that of a column of the CSV files (B). Inputs of the pump: drive_speed, "
+      "drive_acceleration, drive_torque, suction_pressure, delivery_pressure, load_share. Equal "
+      "names are always connected. Where both sides have A and B: pump:A=B or fmu:A=B, for the "
+      "input of the pump or of the FMU");
+  command.option("--communication-step", choice_.step,
+                 Values::positive("SECONDS [that of the FMU, or between rows]"),
+                 "s between the points at which pump and FMU exchange values");
+  command.option("--fmu-timeout", choice_.limits.call_seconds,
+                 Values::numbers(0, 1e6, "SECONDS [60]"),
+                 "s: the maximum elapsed time of one call of a function of the FMU; 0: no limit");
 }
 
 std::shared_ptr<const study::UnitCoupling> UnitOption::coupling(const CommandParser& command,
