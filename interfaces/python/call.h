@@ -10,6 +10,7 @@
 
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/report/document.h"
 #include "bentaxis/study/progress.h"
 
 namespace bentaxis::python {
@@ -51,5 +52,9 @@ void warn(const std::string& text);
 std::vector<std::string> plausibility_texts(const Case& the_case);
 /// Warns of each: bentaxis.PlausibilityWarning.
 void warn_of_plausibility(const std::vector<std::string>& texts);
+/// Warns of what is implausible about a case. @return the texts
+std::vector<std::string> warned_of(const Case& the_case);
+/// Warns of what a result says, and adds it to the texts of all warnings.
+void warn_of(const std::vector<report::Warning>& warnings, std::vector<std::string>& texts);
 
 }  // namespace bentaxis::python

@@ -9,6 +9,7 @@
 #include "bentaxis/study/comparison_document.h"
 #include "binding.h"
 #include "call.h"
+#include "choices.h"
 #include "python_case.h"
 #include "report.h"
 #include "result_files.h"
@@ -68,10 +69,7 @@ Comparison compare_cases(const PythonCase& the_case, const CaseValues& multibody
     return std::make_shared<const study::ComparisonResult>(
         study::compare_models(std::move(first), std::move(second), options, progress_of));
   });
-  for (const report::Warning& warning : comparison.result->warnings) {
-    warn(warning.name + ": " + warning.text);
-    comparison.warnings.push_back(warning.name + ": " + warning.text);
-  }
+  warn_of(comparison.result->warnings, comparison.warnings);
   return comparison;
 }
 
@@ -159,22 +157,20 @@ void add_comparison_pieces(py::module_& module) {
 }  // namespace
 
 void add_comparison(py::module_& module) {
+  const auto result = [](auto member) { return of(&Comparison::result, member); };
   add_comparison_pieces(module);
   py::class_<Comparison>(module, "Comparison",
                          "Results of both models on one case, and their differences.")
       .def_property_readonly(
-          "agrees", [](const Comparison& self) { return self.result->passes(); },
+          "agrees", result(&study::ComparisonResult::passes),
           "Verdict: every difference, less what stated assumptions explain, is within tolerance, "
           "and every check is passed.")
-      .def_property_readonly(
-          "headline", [](const Comparison& self) { return self.result->headline(); },
-          "The verdict in a sentence.")
-      .def_property_readonly(
-          "text", [](const Comparison& self) { return study::comparison_text(*self.result); },
-          "Text that the program prints.")
-      .def_property_readonly(
-          "tolerance", [](const Comparison& self) { return self.result->tolerance; },
-          "Allowed difference over the peak.")
+      .def_property_readonly("headline", result(&study::ComparisonResult::headline),
+                             "The verdict in a sentence.")
+      .def_property_readonly("text", result(study::comparison_text),
+                             "Text that the program prints.")
+      .def_property_readonly("tolerance", result(&study::ComparisonResult::tolerance),
+                             "Allowed difference over the peak.")
       .def_property_readonly(
           "worst", &worst,
           "The channel with the largest difference over its peak; None where none "
@@ -198,9 +194,8 @@ void add_comparison(py::module_& module) {
             return table(self, self.result->first.hydraulics->table);
           },
           "Results of the hydraulic model; None where the pressure is given by the case.")
-      .def_property_readonly(
-          "checks", [](const Comparison& self) { return self.result->checks; },
-          "Checks of each model.")
+      .def_property_readonly("checks", result(&study::ComparisonResult::checks),
+                             "Checks of each model.")
       .def_readonly("warnings", &Comparison::warnings, "Warnings about the case and the results.")
       .def("report", &report_comparison, py::arg("folder"),
            "Writes report.html, report.json and the curves as the program does; returns their "

@@ -43,6 +43,19 @@ void warn_of_plausibility(const std::vector<std::string>& texts) {
     if (PyErr_WarnEx(plausibility_warning, text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
+std::vector<std::string> warned_of(const Case& the_case) {
+  std::vector<std::string> texts = plausibility_texts(the_case);
+  warn_of_plausibility(texts);
+  return texts;
+}
+
+void warn_of(const std::vector<report::Warning>& warnings, std::vector<std::string>& texts) {
+  for (const report::Warning& warning : warnings) {
+    texts.push_back(warning.name + ": " + warning.text);
+    warn(texts.back());
+  }
+}
+
 void add_errors(py::module_& module) {
   input_error = new_class(module, "InputError",
                           "An input (file, key or argument) cannot be used. The message names it, "

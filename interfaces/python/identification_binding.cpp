@@ -8,6 +8,7 @@
 #include "bentaxis/pump/number.h"
 #include "binding.h"
 #include "call.h"
+#include "choices.h"
 #include "python_case.h"
 #include "report.h"
 #include "table.h"
@@ -31,17 +32,11 @@ struct Identification {
 
 designs::IdentifyOptions options_of(int starts, std::uint64_t seed, int steps, int draws,
                                     double measured, bool fit_only, int threads) {
-  const auto within = [](const char* name, double value, double low, double high) {
-    const NumberRange range{low, high};
-    if (!range.contains(value))
-      throw InputError(std::string(name) + " = " + number_text(value) + ": must be " +
-                       range.text());
-  };
-  within("starts", starts, 1, 10000);
-  within("steps", steps, 20, 1000000);
-  within("draws", draws, 10, 100000);
-  within("measured", measured, 1e-6, 1);
-  within("threads", threads, 0, 1024);
+  require_in("starts", starts, 1, 10000);
+  require_in("steps", steps, 20, 1000000);
+  require_in("draws", draws, 10, 100000);
+  require_in("measured", measured, 1e-6, 1);
+  require_in("threads", threads, 0, 1024);
   designs::IdentifyOptions options;
   options.starts = starts;
   options.seed = seed;
@@ -80,7 +75,7 @@ Identification identify(const PythonCase& the_case, const Paths& data, const Bou
         "identify: this module was built without Ceres; install libceres-dev (scripts/setup full) "
         "and build again");
   Case copy = the_case.copy();
-  warn_of_plausibility(plausibility_texts(copy));
+  warned_of(copy);
   return {unlocked([&](const study::PartProgress& progress_of) {
             const InputLog inputs(InputLog::Threads::own);
             designs::IdentificationData all;
@@ -183,6 +178,11 @@ std::vector<fs::path> report_identification(const Identification& self, const fs
 }  // namespace
 
 void add_identification(py::module_& module) {
+  const auto goodness = [](auto member) {
+    return [member](const Identification& self) {
+      return std::invoke(member, self.found->result.goodness);
+    };
+  };
   py::class_<Minimum>(module, "Minimum", "A local minimum of the sum of squares.")
       .def_readonly("values", &Minimum::x, "Values of the unknowns, in their order.")
       .def_readonly("sum_of_squares", &Minimum::sum_of_squares, "There.")
@@ -218,26 +218,20 @@ void add_identification(py::module_& module) {
           [](const Identification& self) { return self.found->result.fit.sum_of_squares; },
           "Chi-square: sum of squares of all residuals over their uncertainties.")
       .def_property_readonly(
-          "degrees_of_freedom",
-          [](const Identification& self) {
-            return self.found->result.goodness.degrees_of_freedom();
-          },
+          "degrees_of_freedom", goodness(&designs::GoodnessOfFit::degrees_of_freedom),
           "Degrees of freedom: number of data less number of fitted values; 0: the fit cannot be "
           "tested.")
       .def_property_readonly(
-          "p_value", [](const Identification& self) { return self.found->result.goodness.p_value; },
+          "p_value", goodness(&designs::GoodnessOfFit::p_value),
           "Probability of a larger sum of squares if model and stated uncertainties are right; "
           "None "
           "without degrees of freedom.")
       .def_property_readonly(
-          "refuted",
-          [](const Identification& self) { return self.found->result.goodness.refuted(); },
+          "refuted", goodness(&designs::GoodnessOfFit::refuted),
           "Whether the data refute the model with these unknowns: p_value below 0.001. There are "
           "then no intervals and no bands.")
-      .def_property_readonly(
-          "birge_ratio",
-          [](const Identification& self) { return self.found->result.goodness.birge_ratio(); },
-          "Root of the sum of squares over the degrees of freedom.")
+      .def_property_readonly("birge_ratio", goodness(&designs::GoodnessOfFit::birge_ratio),
+                             "Root of the sum of squares over the degrees of freedom.")
       .def_property_readonly("worst_residuals", &worst_of_fit,
                              "Names of the data with the largest residuals, and the residuals over "
                              "their standard uncertainties, the largest first.")

@@ -76,8 +76,7 @@ Optimisation optimise(const PythonCase& the_case, const Variations& vary, const 
   designs::OptimiseWork work;
   work.threads = static_cast<int>(count_in("threads", threads, 0, 1024));
   const Case copy = the_case.copy();
-  const std::vector<std::string> implausible = plausibility_texts(copy);
-  warn_of_plausibility(implausible);
+  const std::vector<std::string> implausible = warned_of(copy);
   Optimisation found =
       shown(unlocked([&](const study::PartProgress& progress_of) {
               const designs::Optimiser optimiser(copy, designs::optimise_plan(request, copy));
@@ -124,7 +123,7 @@ void add_optimisation(py::module_& module) {
       "A table of all designs that a search evaluated: parameters that vary and outputs, in the "
       "order of the evaluations.")
       .def_property_readonly(
-          "chosen", [](const Optimisation& self) { return self.found->chosen; },
+          "chosen", of(&Optimisation::found, &designs::Optimisation::chosen),
           "The best design of each objective and a balanced one; empty where no design keeps all "
           "constraints.")
       .def_property_readonly("front", &front, "Rows of the Pareto front.")

@@ -11,6 +11,7 @@
 #include "bentaxis/study/regression_document.h"
 #include "binding.h"
 #include "call.h"
+#include "choices.h"
 #include "report.h"
 #include "table.h"
 
@@ -30,17 +31,8 @@ struct Held {
 };
 
 std::string state_of(const Outcome& outcome) {
-  switch (outcome.state) {
-    case Outcome::State::agrees:
-      return "agrees";
-    case Outcome::State::differs:
-      return "differs";
-    case Outcome::State::unusable:
-      return "unusable";
-    case Outcome::State::failed:
-      break;
-  }
-  return "failed";
+  constexpr const char* kStates[] = {"agrees", "differs", "unusable", "failed"};  // as in the enum
+  return kStates[static_cast<int>(outcome.state)];
 }
 
 Regression regress(const std::optional<fs::path>& folder, const std::string& filter) {
@@ -83,6 +75,7 @@ std::optional<Table> table(const Held& self, const std::string& model, bool refe
 }
 
 void add_regression_pieces(py::module_& module) {
+  const auto outcome = [](auto member) { return of(&Held::outcome, member); };
   py::class_<GroupLine>(module, "ReferenceGroup",
                         "Comparison of a group of channels of one model with one reference.")
       .def_readonly("reference", &GroupLine::reference, "Name of the reference.")
@@ -104,27 +97,21 @@ void add_regression_pieces(py::module_& module) {
           },
           "Group and verdict.");
   py::class_<Held>(module, "Outcome", "Result for one reference.")
-      .def_property_readonly(
-          "name", [](const Held& self) { return self.outcome->name; }, "Name of the reference.")
-      .def_property_readonly(
-          "kind", [](const Held& self) { return self.outcome->kind; }, "Kind of the reference.")
-      .def_property_readonly(
-          "state", [](const Held& self) { return state_of(*self.outcome); },
-          "\"agrees\", \"differs\", \"unusable\" or \"failed\".")
-      .def_property_readonly(
-          "error", [](const Held& self) { return self.outcome->error; },
-          "Why it differs as a whole, is unusable or failed.")
-      .def_property_readonly(
-          "groups", [](const Held& self) { return self.outcome->lines; },
-          "Result for each group of channels of each model.")
+      .def_property_readonly("name", outcome(&Outcome::name), "Name of the reference.")
+      .def_property_readonly("kind", outcome(&Outcome::kind), "Kind of the reference.")
+      .def_property_readonly("state", outcome(state_of),
+                             "\"agrees\", \"differs\", \"unusable\" or \"failed\".")
+      .def_property_readonly("error", outcome(&Outcome::error),
+                             "Why it differs as a whole, is unusable or failed.")
+      .def_property_readonly("groups", outcome(&Outcome::lines),
+                             "Result for each group of channels of each model.")
       .def_property_readonly(
           "explanation",
           [](const Held& self) {
             return self.outcome->explanation ? self.outcome->explanation->text() : std::string();
           },
           "Where it differs: which parameters of the case would explain it, in words.")
-      .def_property_readonly(
-          "notes", [](const Held& self) { return self.outcome->notes; }, "Further remarks.")
+      .def_property_readonly("notes", outcome(&Outcome::notes), "Further remarks.")
       .def(
           "result",
           [](const Held& self, const std::string& model) { return table(self, model, false); },

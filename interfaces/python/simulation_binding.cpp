@@ -29,9 +29,7 @@ Simulation simulate(const PythonCase& the_case, const std::optional<std::string>
                     double error, const std::string& oil, bool steady) {
   study::SimulationChoice choice;
   if (model) choice.only = model_called(*model);
-  constexpr NumberRange kErrors{1e-10, 0.1};
-  if (!kErrors.contains(error))
-    throw InputError("error = " + number_text(error) + ": must be " + kErrors.text());
+  require_in("error", error, 1e-10, 0.1);
   choice.error = error;
   if (oil != "coupled" && oil != "periodic")
     throw InputError("oil " + oil + ": must be coupled or periodic");
@@ -39,8 +37,7 @@ Simulation simulate(const PythonCase& the_case, const std::optional<std::string>
   choice.steady = steady;
   Case copy = the_case.copy();
   Simulation simulation;
-  simulation.warnings = plausibility_texts(copy);
-  warn_of_plausibility(simulation.warnings);
+  simulation.warnings = warned_of(copy);
   std::vector<report::Warning> of_run;
   simulation.result = unlocked([&](const study::PartProgress& progress_of) {
     drive_of(copy);
@@ -52,10 +49,7 @@ Simulation simulate(const PythonCase& the_case, const std::optional<std::string>
                  .warnings.value_or(std::vector<report::Warning>());
     return result;
   });
-  for (const report::Warning& warning : of_run) {
-    warn(warning.name + ": " + warning.text);
-    simulation.warnings.push_back(warning.name + ": " + warning.text);
-  }
+  warn_of(of_run, simulation.warnings);
   return simulation;
 }
 
@@ -123,20 +117,19 @@ void add_simulation(py::module_& module) {
   add_simulation_pieces(module);
   constexpr Run kAnalytic = &study::SimulationResult::analytic;
   constexpr Run kMultibody = &study::SimulationResult::multibody;
+  const auto result = [](auto member) { return of(&Simulation::result, member); };
   const auto periodic = [](int model) {
     return [model](const Simulation& self) { return self.result->periodic[model]; };
   };
   py::class_<Simulation>(module, "Simulation",
                          "Motion in time by both models, or by one, and their differences.")
       .def_property_readonly(
-          "agrees", [](const Simulation& self) { return self.result->agrees(); },
+          "agrees", result(&study::SimulationResult::agrees),
           "Whether both models agree; of one model: whether its checks are passed.")
-      .def_property_readonly(
-          "headline", [](const Simulation& self) { return self.result->headline(); },
-          "The verdict in a sentence.")
-      .def_property_readonly(
-          "text", [](const Simulation& self) { return study::simulation_text(*self.result); },
-          "Text that the program prints.")
+      .def_property_readonly("headline", result(&study::SimulationResult::headline),
+                             "The verdict in a sentence.")
+      .def_property_readonly("text", result(study::simulation_text),
+                             "Text that the program prints.")
       .def_property_readonly(
           "analytic", [](const Simulation& self) { return motion(self, kAnalytic); },
           "Results of the analytic model over time; None where it was not run.")
@@ -160,15 +153,13 @@ void add_simulation(py::module_& module) {
       .def_property_readonly("periodic_analytic", periodic(0),
                              "Periodic motion; None where it was not requested.")
       .def_property_readonly("periodic_multibody", periodic(1), "Likewise.")
-      .def_property_readonly(
-          "groups", [](const Simulation& self) { return self.result->groups; },
-          "Differences of the models.")
-      .def_property_readonly(
-          "checks", [](const Simulation& self) { return self.result->checks; },
-          "Checks: quantities that must be zero.")
+      .def_property_readonly("groups", result(&study::SimulationResult::groups),
+                             "Differences of the models.")
+      .def_property_readonly("checks", result(&study::SimulationResult::checks),
+                             "Checks: quantities that must be zero.")
       .def_readonly("warnings", &Simulation::warnings, "Warnings about the case and the motion.")
       .def_property_readonly(
-          "judged_until_s", [](const Simulation& self) { return self.result->judged_until_s; },
+          "judged_until_s", result(&study::SimulationResult::judged_until_s),
           "Time up to which results are compared; after it a disturbance of the wanted error is "
           "amplified too much.")
       .def("report", &report_simulation, py::arg("folder"),

@@ -59,8 +59,7 @@ Sweep sweep(const PythonCase& the_case, const Variations& vary, const Texts& out
   request.check_share = check;
   if (threads < 0) throw InputError("threads = " + std::to_string(threads) + ": must be >= 0");
   const Case copy = the_case.copy();
-  const std::vector<std::string> implausible = plausibility_texts(copy);
-  warn_of_plausibility(implausible);
+  const std::vector<std::string> implausible = warned_of(copy);
   Sweep swept = shown(unlocked([&](const study::PartProgress& progress_of) {
     const designs::Sweep all(copy, designs::sweep_plan(request, copy));
     return std::make_shared<const designs::SweepResult>(
@@ -83,6 +82,7 @@ std::vector<std::filesystem::path> report_sweep(const Sweep& self,
 }  // namespace
 
 void add_sweep(py::module_& module) {
+  const auto result = [](auto member) { return of(&Sweep::result, member); };
   py::class_<SweepCheck>(module, "SweepCheck",
                          "A design that was also computed by the other model.")
       .def_readonly("design", &SweepCheck::design, "Row of the design.")
@@ -102,22 +102,18 @@ void add_sweep(py::module_& module) {
       module, "Sweep",
       "A table of designs: parameters that vary, in the units of the case file, and outputs. A "
       "choice is the index of its word, from 0.")
-      .def_property_readonly(
-          "infeasible", [](const Sweep& self) { return reasons_of(*self.result); },
-          "Reasons why designs have no outputs, by row.")
-      .def_property_readonly(
-          "checks", [](const Sweep& self) { return self.result->checks; },
-          "Designs that were also computed by the other model.")
-      .def_property_readonly(
-          "agrees", [](const Sweep& self) { return self.result->agrees(); },
-          "Whether all designs that both models computed agree, and there are any, where designs "
-          "were to be checked.")
+      .def_property_readonly("infeasible", result(reasons_of),
+                             "Reasons why designs have no outputs, by row.")
+      .def_property_readonly("checks", result(&designs::SweepResult::checks),
+                             "Designs that were also computed by the other model.")
+      .def_property_readonly("agrees", result(&designs::SweepResult::agrees),
+                             "Whether all designs that both models computed agree, and there are "
+                             "any, where designs were to be checked.")
       .def_property_readonly(
           "headline", [](const Sweep& self) { return designs::headline(*self.result); },
           "Summary in one line.")
-      .def_property_readonly(
-          "seconds", [](const Sweep& self) { return self.result->seconds; },
-          "Elapsed time of the computation.")
+      .def_property_readonly("seconds", result(&designs::SweepResult::seconds),
+                             "Elapsed time of the computation.")
       .def("report", &report_sweep, py::arg("folder"),
            "Writes report.html, report.json and sweep.csv as the program does; returns their "
            "paths.");

@@ -44,10 +44,6 @@ void add_channels(Table& table, const ResultTable& of) {
     table.columns.push_back(column_of(of.channels[i], of.values.data() + i, of.columns()));
 }
 
-}  // namespace
-
-namespace {
-
 // By its name, or by a short name that only one has.
 const Column* column_called(const std::vector<Column>& columns, const std::string& wanted) {
   const Column* found = nullptr;
