@@ -26,7 +26,8 @@ namespace bentaxis::fmu {
 
 /// Every function by its name.
 struct Functions {
-#define BENTAXIS_MEMBER(name) name##TYPE* name = nullptr;  // NOLINT(bugprone-macro-parentheses)
+// NOLINTNEXTLINE(bugprone-macro-parentheses)
+#define BENTAXIS_MEMBER(result, name, arguments) name##TYPE* name = nullptr;
   BENTAXIS_FMI2_FUNCTIONS(BENTAXIS_MEMBER)
   BENTAXIS_FMI3_FUNCTIONS(BENTAXIS_MEMBER)
 #undef BENTAXIS_MEMBER
@@ -34,7 +35,8 @@ struct Functions {
   Functions() {
     void* const library = dlopen(BENTAXIS_FMU_LIBRARY, RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr) throw std::runtime_error(dlerror());
-#define BENTAXIS_FIND(name) name = reinterpret_cast<name##TYPE*>(dlsym(library, #name));
+#define BENTAXIS_FIND(result, name, arguments) \
+  name = reinterpret_cast<name##TYPE*>(dlsym(library, #name));
     BENTAXIS_FMI2_FUNCTIONS(BENTAXIS_FIND)
     BENTAXIS_FMI3_FUNCTIONS(BENTAXIS_FIND)
 #undef BENTAXIS_FIND

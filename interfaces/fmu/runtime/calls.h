@@ -103,7 +103,7 @@ struct Calls {
 }  // namespace bentaxis::fmu
 
 // The functions of a version by the types of its header, and its `call` and `numbers`.
-#define BENTAXIS_DECLARE(name) name##TYPE name;
+#define BENTAXIS_DECLARE(result, name, arguments) result name arguments;
 #define BENTAXIS_CALLS(fmi, FUNCTIONS)                          \
   extern "C" {                                                  \
   FUNCTIONS(BENTAXIS_DECLARE)                                   \

@@ -85,39 +85,25 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
   return call(c, __func__, kInstantiated, [](Instance& it) { it.enter_initialization(); });
 }
 
-fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t count,
-                       fmi2Real value[]) {
-  return Fmi::values(c, __func__, kGet, vr, count, value, count, &Instance::numbers);
-}
-fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t count,
-                          fmi2Boolean value[]) {
-  return Fmi::values(c, __func__, kGet, vr, count, value, count, &Instance::flags<fmi2Boolean>);
-}
-fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t count,
-                          fmi2Integer /*value*/[]) {
-  return Fmi::no_values(c, __func__, kGet, vr, count, "Integer");
-}
-fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t count,
-                         fmi2String /*value*/[]) {
-  return Fmi::no_values(c, __func__, kGet, vr, count, "String");
-}
-fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t count,
-                       const fmi2Real value[]) {
-  return Fmi::values(c, __func__, kSet, vr, count, value, count, &Instance::set_numbers);
-}
-fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t count,
-                          const fmi2Integer /*value*/[]) {
-  return Fmi::no_values(c, __func__, kSetDiscrete, vr, count, "Integer");
-}
-fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t count,
-                          const fmi2Boolean value[]) {
-  return Fmi::values(c, __func__, kSetDiscrete, vr, count, value, count,
-                     &Instance::set_flags<fmi2Boolean>);
-}
-fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t count,
-                         const fmi2String /*value*/[]) {
-  return Fmi::no_values(c, __func__, kSetDiscrete, vr, count, "String");
-}
+// Values of the types that variables have, and of those that none has.
+#define BENTAXIS_VALUES(name, Value, modes, does)                                                 \
+  fmi2Status name(fmi2Component c, const fmi2ValueReference vr[], size_t count, Value values[]) { \
+    return Fmi::values(c, __func__, modes, vr, count, values, count, does);                       \
+  }
+BENTAXIS_VALUES(fmi2GetReal, fmi2Real, kGet, &Instance::numbers)
+BENTAXIS_VALUES(fmi2SetReal, const fmi2Real, kSet, &Instance::set_numbers)
+BENTAXIS_VALUES(fmi2GetBoolean, fmi2Boolean, kGet, &Instance::flags<fmi2Boolean>)
+BENTAXIS_VALUES(fmi2SetBoolean, const fmi2Boolean, kSetDiscrete, &Instance::set_flags<fmi2Boolean>)
+#undef BENTAXIS_VALUES
+#define BENTAXIS_NO_VALUES(name, Value, modes, type)                                       \
+  fmi2Status name(fmi2Component c, const fmi2ValueReference vr[], size_t count, Value[]) { \
+    return Fmi::no_values(c, __func__, modes, vr, count, type);                            \
+  }
+BENTAXIS_NO_VALUES(fmi2GetInteger, fmi2Integer, kGet, "Integer")
+BENTAXIS_NO_VALUES(fmi2SetInteger, const fmi2Integer, kSetDiscrete, "Integer")
+BENTAXIS_NO_VALUES(fmi2GetString, fmi2String, kGet, "String")
+BENTAXIS_NO_VALUES(fmi2SetString, const fmi2String, kSetDiscrete, "String")
+#undef BENTAXIS_NO_VALUES
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[],
                                         size_t unknowns, const fmi2ValueReference known[],

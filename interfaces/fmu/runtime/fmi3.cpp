@@ -13,16 +13,6 @@ namespace {
 using namespace bentaxis::fmu;
 using Kind = Instance::Kind;
 
-fmi3Status refuse(fmi3Instance c, const char* function, const char* why) noexcept {
-  return call(c, function, kAny, [&](Instance& /*it*/) { throw Refused(why); });
-}
-
-fmi3Status no_clocks(fmi3Instance c, const char* function, std::size_t count) noexcept {
-  return call(c, function, kAny, [&](Instance& /*it*/) {
-    if (count > 0) throw Refused("there are no clocks");
-  });
-}
-
 Log log_to(fmi3LogMessageCallback callback, fmi3InstanceEnvironment environment, bool debug) {
   if (callback == nullptr) return Log({}, debug);
   return Log(
@@ -122,37 +112,27 @@ fmi3Status fmi3EnterEventMode(fmi3Instance instance) {
   return call(instance, __func__, kContinuous | kStep, [](Instance& it) { it.enter_event_mode(); });
 }
 
-fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
-                          fmi3Float64 values[], size_t value_count) {
-  return Fmi::values(instance, __func__, kGet | kIntermediate, vr, count, values, value_count,
-                     &Instance::numbers);
-}
-fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
-                          const fmi3Float64 values[], size_t value_count) {
-  return Fmi::values(instance, __func__, kSet | kIntermediate, vr, count, values, value_count,
-                     &Instance::set_numbers);
-}
-fmi3Status fmi3GetBoolean(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
-                          fmi3Boolean values[], size_t value_count) {
-  return Fmi::values(instance, __func__, kGet, vr, count, values, value_count,
-                     &Instance::flags<fmi3Boolean>);
-}
-fmi3Status fmi3SetBoolean(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
-                          const fmi3Boolean values[], size_t value_count) {
-  return Fmi::values(instance, __func__, kSetDiscrete, vr, count, values, value_count,
-                     &Instance::set_flags<fmi3Boolean>);
-}
+// Values of the types that variables have.
+#define BENTAXIS_VALUES(name, Value, modes, does)                                        \
+  fmi3Status name(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,    \
+                  Value values[], size_t value_count) {                                  \
+    return Fmi::values(instance, __func__, modes, vr, count, values, value_count, does); \
+  }
+BENTAXIS_VALUES(fmi3GetFloat64, fmi3Float64, kGet | kIntermediate, &Instance::numbers)
+BENTAXIS_VALUES(fmi3SetFloat64, const fmi3Float64, kSet | kIntermediate, &Instance::set_numbers)
+BENTAXIS_VALUES(fmi3GetBoolean, fmi3Boolean, kGet, &Instance::flags<fmi3Boolean>)
+BENTAXIS_VALUES(fmi3SetBoolean, const fmi3Boolean, kSetDiscrete, &Instance::set_flags<fmi3Boolean>)
+#undef BENTAXIS_VALUES
 
 // Types that no variable has.
-#define BENTAXIS_NO_TYPE(Type)                                                                 \
-  fmi3Status fmi3Get##Type(fmi3Instance instance, const fmi3ValueReference vr[], size_t count, \
-                           fmi3##Type /*values*/[], size_t /*value_count*/) {                  \
-    return Fmi::no_values(instance, __func__, kGet, vr, count, #Type);                         \
-  }                                                                                            \
-  fmi3Status fmi3Set##Type(fmi3Instance instance, const fmi3ValueReference vr[], size_t count, \
-                           const fmi3##Type /*values*/[], size_t /*value_count*/) {            \
-    return Fmi::no_values(instance, __func__, kSetDiscrete, vr, count, #Type);                 \
+#define BENTAXIS_NO_VALUES(name, modes, type, ...)                                    \
+  fmi3Status name(fmi3Instance instance, const fmi3ValueReference vr[], size_t count, \
+                  __VA_ARGS__) {                                                      \
+    return Fmi::no_values(instance, __func__, modes, vr, count, type);                \
   }
+#define BENTAXIS_NO_TYPE(Type)                                         \
+  BENTAXIS_NO_VALUES(fmi3Get##Type, kGet, #Type, fmi3##Type[], size_t) \
+  BENTAXIS_NO_VALUES(fmi3Set##Type, kSetDiscrete, #Type, const fmi3##Type[], size_t)
 BENTAXIS_NO_TYPE(Float32)
 BENTAXIS_NO_TYPE(Int8)
 BENTAXIS_NO_TYPE(UInt8)
@@ -163,38 +143,50 @@ BENTAXIS_NO_TYPE(UInt32)
 BENTAXIS_NO_TYPE(Int64)
 BENTAXIS_NO_TYPE(UInt64)
 BENTAXIS_NO_TYPE(String)
+BENTAXIS_NO_VALUES(fmi3GetBinary, kGet, "Binary", size_t[], fmi3Binary[], size_t)
+BENTAXIS_NO_VALUES(fmi3SetBinary, kSetDiscrete, "Binary", const size_t[], const fmi3Binary[],
+                   size_t)
+BENTAXIS_NO_VALUES(fmi3GetClock, kGet, "Clock", fmi3Clock[])
+BENTAXIS_NO_VALUES(fmi3SetClock, kSetDiscrete, "Clock", const fmi3Clock[])
 #undef BENTAXIS_NO_TYPE
-fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
-                         size_t /*sizes*/[], fmi3Binary /*values*/[], size_t /*value_count*/) {
-  return Fmi::no_values(instance, __func__, kGet, vr, count, "Binary");
-}
-fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
-                         const size_t /*sizes*/[], const fmi3Binary /*values*/[],
-                         size_t /*value_count*/) {
-  return Fmi::no_values(instance, __func__, kSetDiscrete, vr, count, "Binary");
-}
-fmi3Status fmi3GetClock(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
-                        fmi3Clock /*values*/[]) {
-  return Fmi::no_values(instance, __func__, kGet, vr, count, "Clock");
-}
-fmi3Status fmi3SetClock(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
-                        const fmi3Clock /*values*/[]) {
-  return Fmi::no_values(instance, __func__, kSetDiscrete, vr, count, "Clock");
-}
+#undef BENTAXIS_NO_VALUES
 
-fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance instance, fmi3ValueReference /*vr*/,
-                                               size_t* /*count*/) {
-  return refuse(instance, __func__,
-                "dependencies of elements are not given: providesPerElementDependencies is false");
-}
-fmi3Status fmi3GetVariableDependencies(fmi3Instance instance, fmi3ValueReference /*dependent*/,
-                                       size_t /*dependent_elements*/[],
-                                       fmi3ValueReference /*independents*/[],
-                                       size_t /*independent_elements*/[],
-                                       fmi3DependencyKind /*kinds*/[], size_t /*count*/) {
-  return refuse(instance, __func__,
-                "dependencies of elements are not given: providesPerElementDependencies is false");
-}
+// What this FMU has not, with the arguments behind the instance. Whoever asks is told why.
+#define BENTAXIS_REFUSED(name, why, ...)                                                 \
+  fmi3Status name(fmi3Instance instance __VA_OPT__(, ) __VA_ARGS__) {                    \
+    return call(instance, __func__, kAny, [](Instance& /*it*/) { throw Refused(why); }); \
+  }
+constexpr const char* kNoElements =
+    "dependencies of elements are not given: providesPerElementDependencies is false";
+BENTAXIS_REFUSED(fmi3GetNumberOfVariableDependencies, kNoElements, fmi3ValueReference, size_t*)
+BENTAXIS_REFUSED(fmi3GetVariableDependencies, kNoElements, fmi3ValueReference, size_t[],
+                 fmi3ValueReference[], size_t[], fmi3DependencyKind[], size_t)
+BENTAXIS_REFUSED(fmi3GetAdjointDerivative,
+                 "there are no adjoint derivatives: providesAdjointDerivatives is false",
+                 const fmi3ValueReference[], size_t, const fmi3ValueReference[], size_t,
+                 const fmi3Float64[], size_t, fmi3Float64[], size_t)
+BENTAXIS_REFUSED(fmi3EnterConfigurationMode, "there are no structural parameters to configure")
+BENTAXIS_REFUSED(fmi3ExitConfigurationMode, "there are no structural parameters to configure")
+BENTAXIS_REFUSED(fmi3ActivateModelPartition, "this FMU has no scheduled execution",
+                 fmi3ValueReference, fmi3Float64)
+#undef BENTAXIS_REFUSED
+
+// Of clocks, of which there are none.
+#define BENTAXIS_OF_CLOCKS(name, ...)                                                             \
+  fmi3Status name(fmi3Instance instance, const fmi3ValueReference[], size_t count, __VA_ARGS__) { \
+    return call(instance, __func__, kAny, [&](Instance& /*it*/) {                                 \
+      if (count > 0) throw Refused("there are no clocks");                                        \
+    });                                                                                           \
+  }
+BENTAXIS_OF_CLOCKS(fmi3GetIntervalDecimal, fmi3Float64[], fmi3IntervalQualifier[])
+BENTAXIS_OF_CLOCKS(fmi3GetIntervalFraction, fmi3UInt64[], fmi3UInt64[], fmi3IntervalQualifier[])
+BENTAXIS_OF_CLOCKS(fmi3GetShiftDecimal, fmi3Float64[])
+BENTAXIS_OF_CLOCKS(fmi3GetShiftFraction, fmi3UInt64[], fmi3UInt64[])
+BENTAXIS_OF_CLOCKS(fmi3SetIntervalDecimal, const fmi3Float64[])
+BENTAXIS_OF_CLOCKS(fmi3SetIntervalFraction, const fmi3UInt64[], const fmi3UInt64[])
+BENTAXIS_OF_CLOCKS(fmi3SetShiftDecimal, const fmi3Float64[])
+BENTAXIS_OF_CLOCKS(fmi3SetShiftFraction, const fmi3UInt64[], const fmi3UInt64[])
+#undef BENTAXIS_OF_CLOCKS
 
 fmi3Status fmi3GetDirectionalDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[],
                                         size_t unknown_count, const fmi3ValueReference knowns[],
@@ -209,61 +201,6 @@ fmi3Status fmi3GetDirectionalDerivative(fmi3Instance instance, const fmi3ValueRe
     it.derivative(unknowns, unknown_count, knowns, known_count, seed, sensitivity);
   });
 }
-fmi3Status fmi3GetAdjointDerivative(fmi3Instance instance, const fmi3ValueReference /*unknowns*/[],
-                                    size_t /*unknown_count*/, const fmi3ValueReference /*knowns*/[],
-                                    size_t /*known_count*/, const fmi3Float64 /*seed*/[],
-                                    size_t /*seed_count*/, fmi3Float64 /*sensitivity*/[],
-                                    size_t /*sensitivity_count*/) {
-  return refuse(instance, __func__,
-                "there are no adjoint derivatives: providesAdjointDerivatives is false");
-}
-
-fmi3Status fmi3EnterConfigurationMode(fmi3Instance instance) {
-  return refuse(instance, __func__, "there are no structural parameters to configure");
-}
-fmi3Status fmi3ExitConfigurationMode(fmi3Instance instance) {
-  return refuse(instance, __func__, "there are no structural parameters to configure");
-}
-
-fmi3Status fmi3GetIntervalDecimal(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
-                                  size_t count, fmi3Float64 /*intervals*/[],
-                                  fmi3IntervalQualifier /*qualifiers*/[]) {
-  return no_clocks(instance, __func__, count);
-}
-fmi3Status fmi3GetIntervalFraction(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
-                                   size_t count, fmi3UInt64 /*counters*/[],
-                                   fmi3UInt64 /*resolutions*/[],
-                                   fmi3IntervalQualifier /*qualifiers*/[]) {
-  return no_clocks(instance, __func__, count);
-}
-fmi3Status fmi3GetShiftDecimal(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
-                               size_t count, fmi3Float64 /*shifts*/[]) {
-  return no_clocks(instance, __func__, count);
-}
-fmi3Status fmi3GetShiftFraction(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
-                                size_t count, fmi3UInt64 /*counters*/[],
-                                fmi3UInt64 /*resolutions*/[]) {
-  return no_clocks(instance, __func__, count);
-}
-fmi3Status fmi3SetIntervalDecimal(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
-                                  size_t count, const fmi3Float64 /*intervals*/[]) {
-  return no_clocks(instance, __func__, count);
-}
-fmi3Status fmi3SetIntervalFraction(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
-                                   size_t count, const fmi3UInt64 /*counters*/[],
-                                   const fmi3UInt64 /*resolutions*/[]) {
-  return no_clocks(instance, __func__, count);
-}
-fmi3Status fmi3SetShiftDecimal(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
-                               size_t count, const fmi3Float64 /*shifts*/[]) {
-  return no_clocks(instance, __func__, count);
-}
-fmi3Status fmi3SetShiftFraction(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
-                                size_t count, const fmi3UInt64 /*counters*/[],
-                                const fmi3UInt64 /*resolutions*/[]) {
-  return no_clocks(instance, __func__, count);
-}
-
 fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance instance) {
   return call(instance, __func__, kInitialization | kEvent, [](Instance& /*it*/) {});
 }
@@ -334,11 +271,4 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 time, fmi3Float64 step,
     *early_return = status == Status::ok && it.stopped_early();
     return status;
   });
-}
-
-// Scheduled execution.
-
-fmi3Status fmi3ActivateModelPartition(fmi3Instance instance, fmi3ValueReference /*clock*/,
-                                      fmi3Float64 /*time*/) {
-  return refuse(instance, __func__, "this FMU has no scheduled execution");
 }

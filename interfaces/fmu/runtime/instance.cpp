@@ -67,7 +67,6 @@ Instance::Instance(const std::filesystem::path& resources, const std::string& to
       throw Refused(variable(reference).name +
                     " has no intermediate values: those are of continuous inputs and of outputs");
   first_inputs_ = Plant(resources_.the_case, resources_.choice, kind).first_inputs();
-  tolerance_ = resources_.choice.tolerance;
   reset();
 }
 
@@ -78,7 +77,8 @@ void Instance::require(Kind kind) const {
 }
 
 void Instance::require_mode(unsigned modes) const {
-  if ((modes & mode_) == 0) throw Refused(std::string("must not be called ") + word_of(mode_));
+  if ((modes & run_.mode) == 0)
+    throw Refused(std::string("must not be called ") + word_of(run_.mode));
 }
 
 Status Instance::failed(const char* function) noexcept {
@@ -97,20 +97,20 @@ Status Instance::failed(const char* function) noexcept {
       status = Status::discard;
       say(error.what());
     } catch (const ComputationError& error) {
-      mode_ = kFailed;
+      run_.mode = kFailed;
       say(error.what());
     } catch (const std::bad_alloc&) {
-      mode_ = kFailed;
+      run_.mode = kFailed;
       say("no memory is left");
     } catch (const std::exception& error) {
-      mode_ = kFailed;
+      run_.mode = kFailed;
       say(error.what());
     } catch (...) {
-      mode_ = kFailed;
+      run_.mode = kFailed;
       say("failed");
     }
   } catch (...) {  // no memory for words
-    mode_ = kFailed;
+    run_.mode = kFailed;
   }
   return status;
 }
@@ -128,46 +128,42 @@ void Instance::set_up(std::optional<double> tolerance, double start_time,
     throw Refused("the tolerance must be a number > 0");
   // Never looser than what the unit was made with: importers pass on defaults of their own solvers.
   constexpr double kTightest = 1e-12;
-  tolerance_ = resources_.choice.tolerance;
-  if (tolerance) tolerance_ = std::min(tolerance_, std::max(*tolerance, kTightest));
-  start_time_ = now_ = start_time;
-  stops_ = stop_time.has_value();
-  stop_time_ = stop_time.value_or(0);
-  set_up_ = true;
+  run_.tolerance = resources_.choice.tolerance;
+  if (tolerance) run_.tolerance = std::min(run_.tolerance, std::max(*tolerance, kTightest));
+  run_.start_time = run_.now = start_time;
+  run_.stops = stop_time.has_value();
+  run_.stop_time = stop_time.value_or(0);
+  run_.set_up = true;
 }
 
 void Instance::enter_initialization() {
-  if (!set_up_) set_up({}, 0, {});
-  mode_ = kInitialization;
+  if (!run_.set_up) set_up({}, 0, {});
+  run_.mode = kInitialization;
 }
 
 void Instance::exit_initialization() {
   try {
     settle();
   } catch (const InputError&) {
-    mode_ = kFailed;
+    run_.mode = kFailed;
     throw;
   }
-  mode_ = kind_ == Kind::co_simulation && !stepping_.event_mode ? kStep : kEvent;
+  run_.mode = kind_ == Kind::co_simulation && !stepping_.event_mode ? kStep : kEvent;
 }
 
 void Instance::terminate() {
   settle();
-  mode_ = kTerminated;
+  run_.mode = kTerminated;
 }
 
 void Instance::reset() {
-  mode_ = kInstantiated;
-  set_up_ = false;
-  tolerance_ = resources_.choice.tolerance;
-  start_time_ = stop_time_ = now_ = 0;
-  stops_ = false;
+  run_ = {};
+  run_.tolerance = resources_.choice.tolerance;
   parameters_ = wanted_ = first_parameters_;
   inputs_ = first_inputs_;
   inputs_changed_ = false;
   plant_.reset();
   open_.reset();
-  started_ = false;
   at_event_ = stopped_early_ = false;
 }
 
@@ -177,24 +173,24 @@ Case Instance::case_as_set(const std::vector<double>& parameters) const {
 
 UnitChoice Instance::present_choice() const {
   UnitChoice choice = resources_.choice;
-  choice.tolerance = tolerance_;
+  choice.tolerance = run_.tolerance;
   return choice;
 }
 
 void Instance::start() {
   const Case the_case = case_as_set(wanted_);
   auto plant = std::make_unique<Plant>(the_case, present_choice(), kind_);
-  plant->start(inputs_, stops_ ? stop_time_ - start_time_ : 0);
+  plant->start(inputs_, run_.stops ? run_.stop_time - run_.start_time : 0);
   plant_ = std::move(plant);
   parameters_ = wanted_;
-  started_ = true;
+  run_.started = true;
 }
 
 void Instance::settle() {
-  if ((mode_ & (kInitialization | kRunning | kIntermediate)) == 0) return;
+  if ((run_.mode & (kInitialization | kRunning | kIntermediate)) == 0) return;
   const bool changed = wanted_ != parameters_;
-  if (mode_ == kInitialization) {
-    if (!started_ || changed || inputs_changed_) start();
+  if (run_.mode == kInitialization) {
+    if (!run_.started || changed || inputs_changed_) start();
     inputs_changed_ = false;
     open_.reset();
     return;
@@ -207,7 +203,7 @@ void Instance::settle() {
       wanted_ = parameters_;
       throw;
     }
-    log_.event("parameters have changed at " + number_text(now_) + " s");
+    log_.event("parameters have changed at " + number_text(run_.now) + " s");
     open_.reset();
   }
   if (inputs_changed_) {
@@ -221,28 +217,28 @@ Status Instance::step(double time, double size) {
   require_finite(time, "the time of the step");
   require_finite(size, "the size of the step");
   if (!(size > 0)) throw Refused("the size of the step " + number_text(size) + " s must be > 0");
-  if (!same_time(time, now_))
+  if (!same_time(time, run_.now))
     throw Refused("the step begins at " + number_text(time) + " s, the pump is at " +
-                  number_text(now_) + " s");
+                  number_text(run_.now) + " s");
   const double end = time + size;
-  if (stops_ && end > stop_time_ && !same_time(end, stop_time_))
+  if (run_.stops && end > run_.stop_time && !same_time(end, run_.stop_time))
     throw Refused("the step ends at " + number_text(end) + " s, after the stop time " +
-                  number_text(stop_time_) + " s");
+                  number_text(run_.stop_time) + " s");
   settle();
   require_inputs_until(end);
   open_.reset();
   at_event_ = stopped_early_ = false;
   // A step below the resolution of time is none.
-  if (!(end - start_time_ > plant_->time())) {
-    now_ = end;
+  if (!(end - run_.start_time > plant_->time())) {
+    run_.now = end;
     return Status::ok;
   }
   try {
     if (stepping_.update || (stepping_.event_mode && stepping_.early_return))
-      step_by_step(now_, end);
+      step_by_step(run_.now, end);
     else
       step_whole(end);
-    stopped_early_ = now_ < end;
+    stopped_early_ = run_.now < end;
   } catch (const ComputationError& error) {
     return log_.say(Status::discard, error.what());
   }
@@ -250,10 +246,10 @@ Status Instance::step(double time, double size) {
 }
 
 void Instance::step_whole(double end) {
-  plant_->step(end - start_time_);
+  plant_->step(end - run_.start_time);
   inputs_ = plant_->inputs();
   note_events();
-  now_ = end;
+  run_.now = end;
 }
 
 // Ends at the first event where the importer allows it, and calls its intermediate update after
@@ -262,13 +258,13 @@ void Instance::step_by_step(double start, double end) {
   // What is set starts the integrator anew: each update may not.
   constexpr double kLeastShareBetweenSettings = 0.05;
   const PlantState before = plant_->state();
-  double stop = end - start_time_, set_at = plant_->time();
+  double stop = end - run_.start_time, set_at = plant_->time();
   try {
     while (plant_->time() < stop && !(at_event_ && stepping_.early_return)) {
       plant_->step_towards(stop);
       inputs_ = plant_->inputs();
       note_events();
-      now_ = plant_->time() == end - start_time_ ? end : start_time_ + plant_->time();
+      run_.now = plant_->time() == end - run_.start_time ? end : run_.start_time + plant_->time();
       if (!stepping_.update) continue;
       const bool may_set = plant_->time() - set_at >= kLeastShareBetweenSettings * (end - start);
       if (may_set) set_at = plant_->time();
@@ -278,18 +274,18 @@ void Instance::step_by_step(double start, double end) {
     plant_->set_state(before);
     inputs_ = plant_->inputs();
     inputs_changed_ = at_event_ = false;
-    now_ = start;
+    run_.now = start;
     throw;
   }
 }
 
 double Instance::intermediate_update(double end, bool may_set) {
-  mode_ = kIntermediate;
+  run_.mode = kIntermediate;
   may_set_ = may_set;
-  const std::optional<double> early = stepping_.update(now_, may_set);
-  if (mode_ != kIntermediate)
+  const std::optional<double> early = stepping_.update(run_.now, may_set);
+  if (run_.mode != kIntermediate)
     throw std::runtime_error("a call within the intermediate update has failed");
-  mode_ = kStep;
+  run_.mode = kStep;
   settle();
   open_.reset();
   if (!early) return end;
@@ -298,42 +294,42 @@ double Instance::intermediate_update(double end, bool may_set) {
              "the step goes on: it cannot return early where earlyReturnAllowed was false");
     return end;
   }
-  return std::isfinite(*early) ? std::clamp(*early - start_time_, plant_->time(), end) : end;
+  return std::isfinite(*early) ? std::clamp(*early - run_.start_time, plant_->time(), end) : end;
 }
 
 void Instance::note_events() {
   at_event_ = false;
   for (const Plant::Passed& event : plant_->passed()) {
     if (log_.tells_events())
-      log_.event("event at " + number_text(start_time_ + event.time) + " s: " + event.what);
+      log_.event("event at " + number_text(run_.start_time + event.time) + " s: " + event.what);
     at_event_ = stepping_.event_mode && event.time == plant_->time();
   }
 }
 
 void Instance::enter_step_mode() {
   settle();
-  mode_ = kStep;
+  run_.mode = kStep;
 }
 
 void Instance::enter_event_mode() {
   if (kind_ == Kind::co_simulation && !stepping_.event_mode)
     throw Refused("this instance has no event mode: eventModeUsed was false");
   settle();
-  mode_ = kEvent;
-  if (log_.tells_events()) log_.event("event at " + number_text(now_) + " s");
+  run_.mode = kEvent;
+  if (log_.tells_events()) log_.event("event at " + number_text(run_.now) + " s");
 }
 
 Instance::Event Instance::update_discrete_states() {
   settle();
   const Plant::Event event = open_plant().pass_event();
   Event told{event.states_changed, {}};
-  if (event.next_time) told.next_time = start_time_ + *event.next_time;
+  if (event.next_time) told.next_time = run_.start_time + *event.next_time;
   return told;
 }
 
 void Instance::enter_continuous_mode() {
   settle();
-  mode_ = kContinuous;
+  run_.mode = kContinuous;
 }
 
 bool Instance::step_completed() {
@@ -343,12 +339,12 @@ bool Instance::step_completed() {
 
 void Instance::set_time(double time) {
   require_finite(time, "the time");
-  if (time < start_time_ && !same_time(time, start_time_))
+  if (time < run_.start_time && !same_time(time, run_.start_time))
     throw Refused("the time " + number_text(time) + " s is before the start time " +
-                  number_text(start_time_) + " s");
+                  number_text(run_.start_time) + " s");
   settle();
-  plant_->set_time(time - start_time_);
-  now_ = time;
+  plant_->set_time(time - run_.start_time);
+  run_.now = time;
 }
 
 namespace {
@@ -388,7 +384,7 @@ void Instance::find_rates() {
   try {
     plant.rates(scratch_);
   } catch (const ComputationError& error) {
-    if (mode_ != kContinuous) throw;
+    if (run_.mode != kContinuous) throw;
     throw NotComputable(error.what());
   }
 }

@@ -117,7 +117,7 @@ class Instance {
   // Co-simulation.
   /// @return ok, or discard where the pump cannot be followed so far: it then stands where it stood
   Status step(double time, double size);
-  double last_time() const { return now_; }
+  double last_time() const { return run_.now; }
   /// Of the last step, where event mode is used: whether it has ended at an event.
   bool at_event() const { return at_event_; }
   /// Whether it has ended before its end, in which case last_time() says when.
@@ -194,19 +194,14 @@ class Instance {
   std::vector<Variable> variables_;
   std::vector<double> first_parameters_;
   Inputs first_inputs_;
-  double tolerance_ = 0;  // as it is asked for
 
-  unsigned mode_ = kInstantiated;
-  bool set_up_ = false;
-  double start_time_ = 0, stop_time_ = 0, now_ = 0;
-  bool stops_ = false;
+  Standing run_;
   // By reference, in the variable's unit; those that have taken effect, and those that are set.
   std::vector<double> parameters_, wanted_;
   Inputs inputs_;
   bool inputs_changed_ = false;
   bool at_event_ = false, stopped_early_ = false, may_set_ = false;
   std::unique_ptr<Plant> plant_;
-  bool started_ = false;
   // The equations at the present state, of co-simulation: made where someone asks for them.
   std::unique_ptr<Plant> open_;
   std::vector<double> scratch_;

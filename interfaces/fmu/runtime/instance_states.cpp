@@ -7,19 +7,7 @@
 namespace bentaxis::fmu {
 
 SavedState Instance::present() const {
-  SavedState state;
-  state.mode = mode_;
-  state.start_time = start_time_;
-  state.stop_time = stop_time_;
-  state.now = now_;
-  state.tolerance = tolerance_;
-  state.stops = stops_;
-  state.set_up = set_up_;
-  state.started = started_;
-  state.parameters = wanted_;
-  state.inputs = inputs_;
-  if (started_) state.plant = plant_->state();
-  return state;
+  return {run_, wanted_, inputs_, run_.started ? plant_->state() : PlantState()};
 }
 
 const SavedState& Instance::known_state(void* state) const {
@@ -49,7 +37,7 @@ void Instance::put_state(void** place, SavedState state) {
 void Instance::save(void** state) {
   // What was set but has not taken effect is set in the saved state too; a plant whose parameters
   // are others than those that are saved would be no state.
-  if ((mode_ & kRunning) != 0) settle();
+  if ((run_.mode & kRunning) != 0) settle();
   put_state(state, present());
 }
 
@@ -57,14 +45,15 @@ void Instance::restore(void* state_given) {
   const SavedState state = known_state(state_given);
   // In initialization mode the start is looked for anew: it may be that of other values.
   const bool goes_on = state.started && (state.mode & (kInstantiated | kInitialization)) == 0;
-  const bool as_built = plant_ && state.parameters == parameters_ && state.tolerance == tolerance_;
+  const bool as_built =
+      plant_ && state.parameters == parameters_ && state.tolerance == run_.tolerance;
   if (goes_on && as_built) {
     try {
       plant_->set_state(state.plant);
     } catch (...) {  // it stands nowhere then
       plant_.reset();
-      started_ = false;
-      mode_ = kFailed;
+      run_.started = false;
+      run_.mode = kFailed;
       throw;
     }
   } else if (goes_on) {
@@ -76,16 +65,10 @@ void Instance::restore(void* state_given) {
   } else {
     plant_.reset();
   }
-  mode_ = state.mode;
-  start_time_ = state.start_time;
-  stop_time_ = state.stop_time;
-  now_ = state.now;
-  tolerance_ = state.tolerance;
-  stops_ = state.stops;
-  set_up_ = state.set_up;
+  run_ = state;
+  run_.started = goes_on;
   parameters_ = wanted_ = state.parameters;
   inputs_ = state.inputs;
-  started_ = goes_on;
   inputs_changed_ = false;
   open_.reset();
 }

@@ -37,11 +37,11 @@ Plant& Instance::open_plant() {
 double Instance::number(Reference reference) {
   const Variable& it = variable(reference);
   if (it.boolean) throw Refused(it.name + " is a Boolean");
-  if (it.role == Role::time) return now_;
-  if (mode_ == kIntermediate) require_intermediate(it, false);
+  if (it.role == Role::time) return run_.now;
+  if (run_.mode == kIntermediate) require_intermediate(it, false);
   if (it.role == Role::parameter) return wanted_[reference];
   if (it.role == Role::input) return input_of(inputs_, it.input);
-  if (mode_ == kInstantiated) throw Refused(it.name + " is not known before initialization");
+  if (run_.mode == kInstantiated) throw Refused(it.name + " is not known before initialization");
   settle();
   if (!plant_) throw Refused(it.name + " is not known: the pump has not been started");
   if (it.role == Role::output) return plant_->outputs().at(it.place);
@@ -63,7 +63,7 @@ bool Instance::flag(Reference reference) {
   const Variable& it = variable(reference);
   if (!it.boolean) throw Refused(it.name + " is a real number");
   if (it.role == Role::input) return inputs_.load_share_replaces_curve;
-  if (mode_ == kInstantiated) throw Refused(it.name + " is not known before initialization");
+  if (run_.mode == kInstantiated) throw Refused(it.name + " is not known before initialization");
   settle();
   if (!plant_) throw Refused(it.name + " is not known: the pump has not been started");
   return plant_->flags().at(it.place);
@@ -79,11 +79,11 @@ void Instance::require_intermediate(const Variable& it, bool set) const {
 void Instance::require_settable(const Variable& it, double value) const {
   if (it.role != Role::parameter && it.role != Role::input)
     throw Refused(it.name + " is calculated: it cannot be set");
-  const bool early = (mode_ & (kInstantiated | kInitialization)) != 0;
+  const bool early = (run_.mode & (kInstantiated | kInitialization)) != 0;
   if (it.role == Role::parameter && !early) {
     if (it.variability != Variability::tunable)
       throw Refused(it.name + " is fixed: it can be set before the end of initialization");
-    if (mode_ == kContinuous)
+    if (run_.mode == kContinuous)
       throw Refused(it.name + " can be set in event mode, not in continuous-time mode");
   }
   if (!std::isfinite(value)) throw Refused(it.name + " must be a finite number");
@@ -155,7 +155,7 @@ void Instance::set_rates(const Reference* references, std::size_t count, const i
 // What changes linearly must not leave its range within a step.
 void Instance::require_inputs_until(double end) const {
   Inputs then = inputs_;
-  advance(then, end - now_);
+  advance(then, end - run_.now);
   for (const Variable& it : variables_) {
     if (it.role != Role::input || it.boolean || rate_of(then, it.input) == nullptr) continue;
     const std::optional<double> least = least_of(it);
@@ -170,7 +170,7 @@ void Instance::set_numbers(const Reference* references, std::size_t count, const
   for (std::size_t i = 0; i < count; ++i) {
     const Variable& it = variable(references[i]);
     if (it.boolean) throw Refused(it.name + " is a Boolean");
-    if (mode_ == kIntermediate) require_intermediate(it, true);
+    if (run_.mode == kIntermediate) require_intermediate(it, true);
     require_settable(it, values[i]);
   }
   for (std::size_t i = 0; i < count; ++i) {

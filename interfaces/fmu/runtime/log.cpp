@@ -10,24 +10,9 @@ namespace {
 
 constexpr const char* kEvents = "logEvents";
 constexpr const char* kAll = "logAll";
+// Of messages, in the order of Status, and that of all of them.
 constexpr std::array<const char*, 6> kCategories = {
     kEvents, "logStatusWarning", "logStatusDiscard", "logStatusError", "logStatusFatal", kAll};
-
-const char* category_of(Status status) {
-  switch (status) {
-    case Status::warning:
-      return kCategories[1];
-    case Status::discard:
-      return kCategories[2];
-    case Status::error:
-      return kCategories[3];
-    case Status::fatal:
-      return kCategories[4];
-    case Status::ok:
-      break;
-  }
-  return kEvents;
-}
 
 }  // namespace
 
@@ -57,7 +42,8 @@ std::string shown(std::string text, std::size_t longest) {
 Status Log::say(Status status, const std::string& message) const noexcept {
   try {
     constexpr std::size_t kLongest = 2000;
-    if (sink_) sink_(status, category_of(status), shown(message, kLongest));
+    if (sink_)
+      sink_(status, kCategories[static_cast<std::size_t>(status)], shown(message, kLongest));
   } catch (...) {  // an importer's function that throws is no reason to stop
   }
   return status;

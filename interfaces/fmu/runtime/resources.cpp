@@ -68,10 +68,6 @@ void read_choice(const std::filesystem::path& file, Resources& all) {
   if (all.token.empty()) throw InputError(file.string() + ": token is missing");
 }
 
-}  // namespace
-
-namespace {
-
 #ifdef _WIN32
 constexpr bool kHasDrives = true;
 #else

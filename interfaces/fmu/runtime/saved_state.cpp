@@ -78,45 +78,27 @@ class Reader {
   std::size_t left_;
 };
 
+template <class Stream, class... Parts>
+void go_through(Stream& stream, Parts&... parts) {
+  (stream.part(parts), ...);
+}
+
 template <class Stream, class TheInputs>
-void go_through(Stream& stream, TheInputs& inputs) {
-  stream.part(inputs.speed);
-  stream.part(inputs.acceleration);
-  stream.part(inputs.torque);
-  stream.part(inputs.suction);
-  stream.part(inputs.delivery);
-  stream.part(inputs.load_share);
-  stream.part(inputs.load_share_replaces_curve);
-  stream.part(inputs.acceleration_given);
-  stream.part(inputs.torque_rate);
-  stream.part(inputs.suction_rate);
-  stream.part(inputs.delivery_rate);
-  stream.part(inputs.load_share_rate);
+void go_through_inputs(Stream& stream, TheInputs& i) {
+  go_through(stream, i.speed, i.acceleration, i.torque, i.suction, i.delivery, i.load_share,
+             i.load_share_replaces_curve, i.acceleration_given, i.torque_rate, i.suction_rate,
+             i.delivery_rate, i.load_share_rate);
 }
 
 template <class Stream, class State>
 void go_through_state(Stream& stream, State& state) {
-  stream.part(state.mode);
-  stream.part(state.start_time);
-  stream.part(state.stop_time);
-  stream.part(state.now);
-  stream.part(state.tolerance);
-  stream.part(state.stops);
-  stream.part(state.set_up);
-  stream.part(state.started);
-  stream.part(state.parameters);
-  go_through(stream, state.inputs);
+  go_through(stream, state.mode, state.start_time, state.stop_time, state.now, state.tolerance,
+             state.stops, state.set_up, state.started, state.parameters);
+  go_through_inputs(stream, state.inputs);
   auto& plant = state.plant;
-  stream.part(plant.time);
-  stream.part(plant.motion);
-  stream.part(plant.oil);
-  stream.part(plant.shaft.angle);
-  stream.part(plant.shaft.speed);
-  stream.part(plant.shaft.acceleration);
-  stream.part(plant.load_size);
-  stream.part(plant.started);
-  stream.part(plant.speed_changed);
-  go_through(stream, plant.inputs);
+  go_through(stream, plant.time, plant.motion, plant.oil, plant.shaft.angle, plant.shaft.speed,
+             plant.shaft.acceleration, plant.load_size, plant.started, plant.speed_changed);
+  go_through_inputs(stream, plant.inputs);
 }
 
 }  // namespace

@@ -9,11 +9,15 @@
 
 namespace bentaxis::fmu {
 
-struct SavedState {
-  unsigned mode = 0;  ///< Mode
+/// Where an instance stands in its run.
+struct Standing {
+  unsigned mode = 1;  ///< Mode
   double start_time = 0, stop_time = 0, now = 0, tolerance = 0;
   bool stops = false, set_up = false;
-  bool started = false;  ///< whether `plant` is
+  bool started = false;  ///< whether the plant is
+};
+
+struct SavedState : Standing {
   std::vector<double> parameters;
   Inputs inputs;
   PlantState plant;

@@ -1,5 +1,5 @@
-// What the reader of case files needs of the module `files` and a unit has no libraries for: curves of
-// a unit are text, and nobody asks which files were read.
+// What the reader of case files needs of the module `files` and a unit has no libraries for: curves
+// of a unit are text, and nobody asks which files were read.
 #include "bentaxis/files/foreign_table.h"
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/error.h"

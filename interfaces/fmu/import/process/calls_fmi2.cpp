@@ -11,13 +11,13 @@ namespace {
 
 struct Functions {
 // NOLINTNEXTLINE(bugprone-macro-parentheses): a name that is declared
-#define BENTAXIS_MEMBER(name) name##TYPE* name = nullptr;
+#define BENTAXIS_MEMBER(result, name, arguments) name##TYPE* name = nullptr;
   BENTAXIS_FMI2_FUNCTIONS(BENTAXIS_MEMBER)
 #undef BENTAXIS_MEMBER
 };
 
 bool find_functions(void* library, Functions& f, std::string& missing) {
-#define BENTAXIS_FIND(name) find(library, f.name, #name);
+#define BENTAXIS_FIND(result, name, arguments) find(library, f.name, #name);
   BENTAXIS_FMI2_FUNCTIONS(BENTAXIS_FIND)
 #undef BENTAXIS_FIND
   // Those that are called here are needed; an FMU may lack the others.

@@ -21,7 +21,7 @@ namespace {
 
 struct Functions {
 // NOLINTNEXTLINE(bugprone-macro-parentheses): a name that is declared
-#define BENTAXIS_MEMBER(name) name##TYPE* name = nullptr;
+#define BENTAXIS_MEMBER(result, name, arguments) name##TYPE* name = nullptr;
   BENTAXIS_FMI3_FUNCTIONS(BENTAXIS_MEMBER)
 #undef BENTAXIS_MEMBER
 };
