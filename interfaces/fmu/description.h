@@ -16,10 +16,10 @@ inline constexpr const char* kModelIdentifier = "bentaxis_pump";
 struct Description {
   std::vector<Variable> variables;  ///< of variables_of()
   std::string model_name, text;     ///< name, and one sentence
-  std::string token;      ///< guid of FMI 2, instantiationToken of FMI 3: of instance_token()
-  std::string generated;  ///< date and time; empty: left out
-  double stop_time = 1;   ///< s
-  double step = 0;        ///< s, of communication, where there is a usual one; 0: none
+  std::string token;                ///< guid of FMI 2, instantiationToken of FMI 3
+  std::string generated;            ///< date and time; empty: left out
+  double stop_time = 1;             ///< s
+  double step = 0;                  ///< s, of communication, where there is a usual one; 0: none
   double tolerance = 1e-9;
   Dependencies dependencies;  ///< of unknowns that are not there nothing is said
 };

@@ -10,35 +10,9 @@
 namespace bentaxis::fmu {
 namespace {
 
-const char* word_of(Causality causality) {
-  switch (causality) {
-    case Causality::independent:
-      return "independent";
-    case Causality::parameter:
-      return "parameter";
-    case Causality::input:
-      return "input";
-    case Causality::output:
-      return "output";
-    case Causality::local:
-      break;
-  }
-  return "local";
-}
-
-const char* word_of(Variability variability) {
-  switch (variability) {
-    case Variability::fixed:
-      return "fixed";
-    case Variability::tunable:
-      return "tunable";
-    case Variability::discrete:
-      return "discrete";
-    case Variability::continuous:
-      break;
-  }
-  return "continuous";
-}
+// In the order of Causality and of Variability.
+constexpr const char* kCausalities[] = {"independent", "parameter", "input", "output", "local"};
+constexpr const char* kVariabilities[] = {"fixed", "tunable", "discrete", "continuous"};
 
 void add_base(pugi::xml_node unit, const UnitOfMeasure& definition) {
   pugi::xml_node base = unit.append_child("BaseUnit");
@@ -172,8 +146,8 @@ void set_identity(pugi::xml_node node, const Variable& variable) {
   set(node, "name", variable.name);
   node.append_attribute("valueReference") = variable.reference;
   if (!variable.description.empty()) set(node, "description", variable.description);
-  node.append_attribute("causality") = word_of(variable.causality);
-  node.append_attribute("variability") = word_of(variable.variability);
+  node.append_attribute("causality") = kCausalities[static_cast<int>(variable.causality)];
+  node.append_attribute("variability") = kVariabilities[static_cast<int>(variable.variability)];
   const Initial initial = initial_of(variable);
   if (initial != Initial::none)
     node.append_attribute("initial") = initial == Initial::exact ? "exact" : "calculated";

@@ -20,17 +20,7 @@
 namespace bentaxis::fmu {
 namespace {
 
-const char* word_of(Drive drive) {
-  switch (drive) {
-    case Drive::speed:
-      return "speed";
-    case Drive::torque:
-      return "torque";
-    case Drive::as_in_case:
-      break;
-  }
-  return "case";
-}
+constexpr const char* kDrives[] = {"speed", "torque", "case"};  // in the order of Drive
 
 // 128 bits of the digest of all that makes this unit, as identifiers are usually written.
 std::string token_of(const std::string& all) {
@@ -40,8 +30,8 @@ std::string token_of(const std::string& all) {
 }
 
 std::string choice_text(const UnitChoice& choice) {
-  std::string text = std::string("drive ") + word_of(choice.drive) + "\ntolerance " +
-                     number_text(choice.tolerance) + "\n";
+  std::string text = std::string("drive ") + kDrives[static_cast<int>(choice.drive)] +
+                     "\ntolerance " + number_text(choice.tolerance) + "\n";
   if (choice.si_outputs) text += "outputs si\n";
   if (choice.start_torque) text += "start_torque " + number_text(*choice.start_torque) + "\n";
   return text;
