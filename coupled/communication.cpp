@@ -37,8 +37,8 @@ Communication::Communication(const std::string& name, Mechanics& mechanics, Oil&
 
 Communication::~Communication() {
   if (outside_ == Surroundings{}) return;
-  mechanics_.surround({});
-  oil_.surround({});
+  mechanics_.set_inputs({});
+  oil_.set_inputs({});
 }
 
 double Communication::next() const {
@@ -67,22 +67,22 @@ void Communication::read(double time, const SystemState& state) {
 
 // What acts has changed. A speed that jumps takes the bodies along: what they gain is work of what
 // turns the shaft.
-void Communication::surround(const Surroundings& outside, HybridIntegrator& course,
-                             const SystemState& state) {
-  const double time = course.time();
+void Communication::set_inputs(const Surroundings& outside, HybridIntegrator& integrator,
+                               const SystemState& state) {
+  const double time = integrator.time();
   const double before = mechanics_.kinetic_energy(time, state.motion);
-  mechanics_.surround(outside);
-  oil_.surround(outside);
+  mechanics_.set_inputs(outside);
+  oil_.set_inputs(outside);
   outside_ = outside;
   SystemState after = state;
   after.motion[kWorkOfDrive] += mechanics_.kinetic_energy(time, state.motion) - before;
-  course.jump(after);
+  integrator.jump(after);
 }
 
-void Communication::pass(HybridIntegrator& course) {
+void Communication::pass(HybridIntegrator& integrator) {
   const double time = next();
   SystemState state;
-  course.state_at(time, state);
+  integrator.state_at(time, state);
   read(time, state);
   Surroundings outside = exchange_.partner({time, names_, values_});
   ++points_;
@@ -100,8 +100,8 @@ void Communication::pass(HybridIntegrator& course) {
     outside.time = outside_.time;
   }
   if (outside == outside_) return;
-  course.go_back(time);
-  surround(outside, course, state);
+  integrator.go_back(time);
+  set_inputs(outside, integrator, state);
 }
 
 }  // namespace bentaxis::coupled

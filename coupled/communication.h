@@ -7,7 +7,7 @@
 
 #include "bentaxis/coupled/simulation.h"
 #include "bentaxis/results/motion.h"
-#include "course.h"
+#include "hybrid_integrator.h"
 
 namespace bentaxis::coupled {
 
@@ -23,13 +23,14 @@ class Communication {
 
   /// s, of the point that is next; beyond any end after the last.
   double next() const;
-  /// Passes it: a course that has got there goes on from it under what the partner gives.
+  /// Passes it: a integrator that has got there goes on from it under what the partner gives.
   /// @throws InputError where the case does not take that, what the partner throws
-  void pass(HybridIntegrator& course);
+  void pass(HybridIntegrator& integrator);
 
  private:
   void read(double time, const SystemState& state);
-  void surround(const Surroundings& outside, HybridIntegrator& course, const SystemState& state);
+  void set_inputs(const Surroundings& outside, HybridIntegrator& integrator,
+                  const SystemState& state);
 
   Mechanics& mechanics_;
   Oil& oil_;

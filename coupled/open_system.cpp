@@ -67,7 +67,7 @@ OpenSystem::OpenSystem(Mechanics& mechanics, Oil& oil, bool shaft_from_outside)
     else
       indicators_.push_back(
           {"flank_minus", "m", "approach of the flank that pushes the block backwards"});
-  knots_ = knots_of(mechanics, oil);
+  breakpoints_ = breakpoints_of(mechanics, oil);
   loads_.chamber_pressure.assign(static_cast<std::size_t>(oil.pistons()), 0.0);
   oil_rates_.resize(of_oil.size());
 }
@@ -80,7 +80,7 @@ void OpenSystem::tell_mechanics() {
   now.time = time_;
   if (!now.shaft) now.shaft = mechanics_.shaft(time_, state_.motion);
   now.shaft->angle = angle_;
-  mechanics_.surround(now);
+  mechanics_.set_inputs(now);
 }
 
 void OpenSystem::start(double time, const SystemState& state) {
@@ -91,13 +91,13 @@ void OpenSystem::start(double time, const SystemState& state) {
   pass_event();
 }
 
-void OpenSystem::surround(const Surroundings& outside) {
+void OpenSystem::set_inputs(const Surroundings& outside) {
   outside_ = outside;
-  oil_.surround(outside);
+  oil_.set_inputs(outside);
   if (angle_is_state_)
     tell_mechanics();
   else
-    mechanics_.surround(outside);
+    mechanics_.set_inputs(outside);
 }
 
 void OpenSystem::set_time(double time) {
@@ -167,9 +167,9 @@ void OpenSystem::pass_event() { edges_->find(block()); }
 
 bool OpenSystem::beyond() const { return !edges_->none() && edges_->left_by(block().angle); }
 
-std::optional<double> OpenSystem::next_knot() const {
-  const auto next = std::upper_bound(knots_.begin(), knots_.end(), time_);
-  if (next == knots_.end()) return std::nullopt;
+std::optional<double> OpenSystem::next_breakpoint() const {
+  const auto next = std::upper_bound(breakpoints_.begin(), breakpoints_.end(), time_);
+  if (next == breakpoints_.end()) return std::nullopt;
   return *next;
 }
 

@@ -24,11 +24,12 @@ class PrescribedOil : public Oil {
     takes.suction = takes.delivery = pressure_.ideal_share(0).has_value();
     return takes;
   }
-  void surround(const Surroundings& outside) override { outside_ = outside; }
+  void surround(const Surroundings& outside) override { set_inputs(outside); }
+  void set_inputs(const Surroundings& outside) override { outside_ = outside; }
   std::vector<double> start() const override { return {}; }
   std::vector<double> scales() const override { return {}; }
   std::vector<double> edges_deg() const override { return edges_deg_; }
-  std::vector<double> knots() const override { return {}; }
+  std::vector<double> breakpoints() const override { return {}; }
   std::vector<int> order_after_period() const override { return {}; }
 
   bool rates(double, const AxisMotion&, const AxisMotion&, const double*, double*) const override {

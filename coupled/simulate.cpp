@@ -7,7 +7,7 @@
 #include "bentaxis/results/max_abs.h"
 #include "bentaxis/results/stopwatch.h"
 #include "communication.h"
-#include "course.h"
+#include "hybrid_integrator.h"
 #include "table.h"
 
 namespace bentaxis::coupled {
@@ -146,10 +146,11 @@ Trajectory tabulate(const std::string& name, Mechanics& mechanics, Oil& oil, con
   trajectory.loads = BodyLoadTable::of(times.size());
   // A given motion without oil has no states but its balances.
   const bool balances = options.balances || System(mechanics, oil, false).scale().empty();
-  HybridIntegrator course(name, mechanics, oil, tolerance, balances);
-  course.start(0, start);
-  course.foresee(times.back());
-  Rows rows(mechanics, oil, course.system(), start, trajectory, times.size(), balances, options);
+  HybridIntegrator integrator(name, mechanics, oil, tolerance, balances);
+  integrator.start(0, start);
+  integrator.foresee(times.back());
+  Rows rows(mechanics, oil, integrator.system(), start, trajectory, times.size(), balances,
+            options);
   SystemState at = start;
   std::vector<double> integrals;
   const double end = times.back();
@@ -157,28 +158,30 @@ Trajectory tabulate(const std::string& name, Mechanics& mechanics, Oil& oil, con
   if (options.exchange) points.emplace(name, mechanics, oil, drive, *options.exchange, end);
   constexpr long kStepsBetweenSigns = 64;
   const auto go_to = [&](double time) {
-    while (course.time() < time) {
-      if (progress && course.steps() % kStepsBetweenSigns == 0) progress(course.time() / end);
-      course.advance(end);
+    while (integrator.time() < time) {
+      if (progress && integrator.steps() % kStepsBetweenSigns == 0)
+        progress(integrator.time() / end);
+      integrator.advance(end);
     }
   };
   for (const double time : times) {
     while (points && points->next() <= time) {
       go_to(points->next());
-      points->pass(course);
+      points->pass(integrator);
     }
     go_to(time);
-    course.state_at(time, at);
-    course.integrals_at(time, integrals);
+    integrator.state_at(time, at);
+    integrator.integrals_at(time, integrals);
     rows.add(time, at, integrals);
   }
-  course.close_contacts();
+  integrator.close_contacts();
   TrajectoryRecord& record = trajectory.record;
-  record.steps = course.steps();
-  record.evaluations = course.evaluations();
+  record.steps = integrator.steps();
+  record.evaluations = integrator.evaluations();
   record.seconds = watch.seconds();
-  record.share_out_of_contact = mechanics.compliant() && end > 0 ? course.time_apart() / end : 0;
-  record.events = course.events();
+  record.share_out_of_contact =
+      mechanics.compliant() && end > 0 ? integrator.time_apart() / end : 0;
+  record.events = integrator.events();
   record.choice = method_text(tolerance, oil.states() > 0);
   return trajectory;
 }

@@ -9,7 +9,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
-#include "course.h"
+#include "hybrid_integrator.h"
 #include "table.h"
 
 namespace bentaxis::coupled {
@@ -97,33 +97,33 @@ class PeriodMap {
     if (progress_) progress_(static_cast<double>(passes_) / (passes_ + kUsualPasses));
     ++passes_;
     if (unknowns() == 0) return {from, period_, std::abs(step_angle() / period_)};
-    HybridIntegrator course(name_, mechanics_, oil_, tolerance, false);
-    course.start(0, from);
+    HybridIntegrator integrator(name_, mechanics_, oil_, tolerance, false);
+    integrator.start(0, from);
     Passage passage;
     passage.state = from;
-    passage.slowest = direction_ * course.shaft(0, from).speed;
+    passage.slowest = direction_ * integrator.shaft(0, from).speed;
     SystemState& at = passage.state;
     const double end = direction_ != 0 && period_ > 0 ? period_ : limit_;
     for (;;) {
-      if (course.time() >= end) {
+      if (integrator.time() >= end) {
         if (period_ > 0) break;
         fail("the block does not turn by an N-th of a turn within " + number_text(limit_) +
              " s (duration_s): the drive may not turn the shaft at all");
       }
-      course.advance(end);
-      course.state_at(course.time(), at);
+      integrator.advance(end);
+      integrator.state_at(integrator.time(), at);
       passage.slowest =
-          std::min(passage.slowest, direction_ * course.shaft(course.time(), at).speed);
+          std::min(passage.slowest, direction_ * integrator.shaft(integrator.time(), at).speed);
       if (period_ > 0) continue;
-      const double turned = course.block(course.time(), at).angle;
+      const double turned = integrator.block(integrator.time(), at).angle;
       if (std::abs(turned) < step_angle() - kAtSection) continue;
       const int way = turned > 0 ? 1 : -1;
       if (direction_ == 0) direction_ = way;
       if (way != direction_) fail("the block turns back");
       break;
     }
-    passage.period = period_ > 0 ? period_ : course.time_at(direction_ * step_angle());
-    course.state_at(passage.period, at);
+    passage.period = period_ > 0 ? period_ : integrator.time_at(direction_ * step_angle());
+    integrator.state_at(passage.period, at);
     on_section(at);
     if (!order_.empty()) {
       const std::vector<double> before = at.oil;
@@ -322,10 +322,10 @@ class Newton {
 SteadyMotion steady(const std::string& name, Mechanics& mechanics, Oil& oil, const DriveSpec& drive,
                     const Options& options, const Progress& progress) {
   const bool over_time = !drive.curve.time.empty() && drive.kind != DriveKind::motor;
-  if (over_time || !mechanics.knots().empty())
+  if (over_time || !mechanics.breakpoints().empty())
     throw InputError(
         "[drive] file: must be left out for a periodic motion: the drive changes over time");
-  if (!oil.knots().empty())
+  if (!oil.breakpoints().empty())
     throw InputError("[hydraulics]: the circuit must not change over time for a periodic motion");
   PeriodMap map(name, mechanics, oil, drive, progress);
   Newton newton(map, options.tolerance);

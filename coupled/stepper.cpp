@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "bentaxis/pump/error.h"
-#include "course.h"
+#include "hybrid_integrator.h"
 
 namespace bentaxis::coupled {
 
@@ -13,7 +13,7 @@ class Stepper::Implementation {
   Implementation(std::string name, Mechanics& mechanics, Oil& oil, double tolerance)
       : mechanics_(mechanics),
         oil_(oil),
-        course_(std::move(name), mechanics, oil, tolerance, true) {}
+        integrator_(std::move(name), mechanics, oil, tolerance, true) {}
 
   void start(double time, const SystemState& state, double end) {
     time_ = time;
@@ -27,14 +27,14 @@ class Stepper::Implementation {
     // The integrator was ahead: what it has met beyond the present time may not happen.
     const auto is_ahead = [this](const PassedEvent& event) { return event.time > time_; };
     events_.erase(std::remove_if(events_.begin(), events_.end(), is_ahead), events_.end());
-    course_.start(time_, state_);
-    course_.forget_events();
+    integrator_.start(time_, state_);
+    integrator_.forget_events();
   }
 
-  void surround(const Surroundings& outside) {
+  void set_inputs(const Surroundings& outside) {
     if (outside == outside_) return;
-    mechanics_.surround(outside);
-    oil_.surround(outside);
+    mechanics_.set_inputs(outside);
+    oil_.set_inputs(outside);
     outside_ = outside;
     restart();
   }
@@ -42,7 +42,7 @@ class Stepper::Implementation {
   void step_to(double time) {
     begin_step(time);
     advance_or_restart(time, [&](double end) {
-      while (course_.time() < time) advance(end);
+      while (integrator_.time() < time) advance(end);
     });
     stand_at(time);
   }
@@ -50,9 +50,9 @@ class Stepper::Implementation {
   void step_towards(double time) {
     begin_step(time);
     advance_or_restart(time, [&](double end) {
-      if (course_.time() <= time_) advance(end);
+      if (integrator_.time() <= time_) advance(end);
     });
-    stand_at(std::min(course_.time(), time));
+    stand_at(std::min(integrator_.time(), time));
   }
 
   std::vector<PassedEvent> passed() const {
@@ -65,7 +65,7 @@ class Stepper::Implementation {
   double time() const { return time_; }
   const SystemState& state() const { return state_; }
   const Surroundings& surroundings() const { return outside_; }
-  long steps() const { return course_.steps(); }
+  long steps() const { return integrator_.steps(); }
 
  private:
   void begin_step(double time) {
@@ -93,29 +93,29 @@ class Stepper::Implementation {
   }
 
   void advance(double end) {
-    course_.advance(end);
+    integrator_.advance(end);
     note_events();
-    course_.forget_events();
+    integrator_.forget_events();
   }
 
   void stand_at(double time) {
-    course_.state_at(time, state_);
+    integrator_.state_at(time, state_);
     time_ = time;
   }
 
   void note_events() {
     using Kind = PassedEvent::Kind;
-    if (course_.at_knot()) events_.push_back({Kind::knot, course_.time()});
-    if (const auto angle = course_.passed_edge())
-      events_.push_back({Kind::edge, course_.time(), *angle});
-    for (const ToothEvent& event : course_.events())
+    if (integrator_.at_breakpoint()) events_.push_back({Kind::breakpoint, integrator_.time()});
+    if (const auto angle = integrator_.passed_edge())
+      events_.push_back({Kind::edge, integrator_.time(), *angle});
+    for (const ToothEvent& event : integrator_.events())
       events_.push_back(
           {event.touch ? Kind::touch : Kind::release, event.time_s, 0, event.flank, event.piston});
   }
 
   Mechanics& mechanics_;
   Oil& oil_;
-  HybridIntegrator course_;
+  HybridIntegrator integrator_;
   std::vector<PassedEvent> events_;  // since the last step_to(), and beyond time_
   Surroundings outside_;
   double time_ = 0, end_ = 0, span_ = 0;
@@ -129,7 +129,7 @@ void Stepper::start(double time, const SystemState& state, double end) {
   it_->start(time, state, end);
 }
 void Stepper::restart() { it_->restart(); }
-void Stepper::surround(const Surroundings& outside) { it_->surround(outside); }
+void Stepper::set_inputs(const Surroundings& outside) { it_->set_inputs(outside); }
 const Surroundings& Stepper::surroundings() const { return it_->surroundings(); }
 void Stepper::step_to(double time) { it_->step_to(time); }
 void Stepper::step_towards(double time) { it_->step_towards(time); }

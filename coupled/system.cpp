@@ -36,11 +36,11 @@ std::vector<std::size_t> moving(const Mechanics& mechanics) {
   return states;
 }
 
-std::vector<double> knots_of(const Mechanics& mechanics, const Oil& oil) {
-  std::vector<double> knots = mechanics.knots();
-  append(knots, oil.knots());
-  std::sort(knots.begin(), knots.end());
-  return knots;
+std::vector<double> breakpoints_of(const Mechanics& mechanics, const Oil& oil) {
+  std::vector<double> breakpoints = mechanics.breakpoints();
+  append(breakpoints, oil.breakpoints());
+  std::sort(breakpoints.begin(), breakpoints.end());
+  return breakpoints;
 }
 
 void pack(const SystemState& state, const std::vector<std::size_t>& motions,

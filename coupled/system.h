@@ -14,7 +14,7 @@ namespace bentaxis::coupled {
 /// States of motion that move, of those that a simulation may have.
 std::vector<std::size_t> moving(const Mechanics& mechanics);
 /// Times at which what is given kinks, rising.
-std::vector<double> knots_of(const Mechanics& mechanics, const Oil& oil);
+std::vector<double> breakpoints_of(const Mechanics& mechanics, const Oil& oil);
 /// Some motions of a state, then its oil, each over its scale; and back.
 void pack(const SystemState& state, const std::vector<std::size_t>& motions,
           const std::vector<double>& scale, double* y);

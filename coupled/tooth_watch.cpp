@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "course.h"
+#include "hybrid_integrator.h"
 
 namespace bentaxis::coupled {
 
-ToothStretch operator+(const ToothStretch& a, const ToothStretch& b) {
+ContactInterval operator+(const ContactInterval& a, const ContactInterval& b) {
   return {a.duration + b.duration,
           a.apart + b.apart,
           a.plus + b.plus,
@@ -29,44 +29,44 @@ class ToothWatch::Watcher {
       : mechanics_(mechanics),
         oil_(oil),
         impact_speed_(impact_speed),
-        course_(std::move(name), mechanics, oil, tolerance, true) {}
+        integrator_(std::move(name), mechanics, oil, tolerance, true) {}
 
   void start(const MotionVector& motion) {
     state_ = {motion, oil_.start()};
     state_.motion[kImpulse] = 0;
-    course_.start(0, state_);
+    integrator_.start(0, state_);
     // What touches now began before.
     touching_.assign(mechanics_.contacts().size(), {});
-    for (const ToothEvent& event : course_.events()) {
+    for (const ToothEvent& event : integrator_.events()) {
       of(event).now = event.touch;
       of(event).side = event.flank;
     }
-    seen_ = course_.events().size();
+    seen_ = integrator_.events().size();
     known_ = 0;
   }
 
-  ToothStretch run_to(double time) {
-    ToothStretch s;
-    const double from = course_.time();
-    const double apart = course_.time_apart();
+  ContactInterval run_to(double time) {
+    ContactInterval s;
+    const double from = integrator_.time();
+    const double apart = integrator_.time_apart();
     const double impulse = state_.motion[kImpulse];
     since_ = from;
     note_force(s);
-    while (course_.time() < time) {
-      course_.advance(time);
-      course_.state_at(course_.time(), state_);
+    while (integrator_.time() < time) {
+      integrator_.advance(time);
+      integrator_.state_at(integrator_.time(), state_);
       note_events(s);
       note_force(s);
     }
-    on_side(s, course_.time());
-    s.duration = course_.time() - from;
-    s.apart = course_.time_apart() - apart;
+    on_side(s, integrator_.time());
+    s.duration = integrator_.time() - from;
+    s.apart = integrator_.time_apart() - apart;
     s.impulse = state_.motion[kImpulse] - impulse;
     return s;
   }
 
   const MotionVector& motion() const { return state_.motion; }
-  long steps() const { return course_.steps(); }
+  long steps() const { return integrator_.steps(); }
 
  private:
   struct Touching {
@@ -85,15 +85,15 @@ class ToothWatch::Watcher {
                        [side](const Touching& t) { return t.now && t.side == side; });
   }
 
-  void on_side(ToothStretch& s, double until) {
+  void on_side(ContactInterval& s, double until) {
     if (touches(1)) s.plus += until - since_;
     if (touches(-1)) s.minus += until - since_;
     since_ = until;
   }
 
-  void note_events(ToothStretch& s) {
-    for (; seen_ < course_.events().size(); ++seen_) {
-      const ToothEvent& event = course_.events()[seen_];
+  void note_events(ContactInterval& s) {
+    for (; seen_ < integrator_.events().size(); ++seen_) {
+      const ToothEvent& event = integrator_.events()[seen_];
       on_side(s, event.time_s);
       known_ = 0;
       Touching& contact = of(event);
@@ -103,15 +103,15 @@ class ToothWatch::Watcher {
       } else {
         ++s.separations;
         if (contact.hit)
-          s.largest_hit = std::max(s.largest_hit, course_.events()[contact.event].impulse);
+          s.largest_hit = std::max(s.largest_hit, integrator_.events()[contact.event].impulse);
         contact = {};
       }
     }
   }
 
-  void note_force(ToothStretch& s) {
+  void note_force(ContactInterval& s) {
     if (!touches(1) && !touches(-1)) return;
-    const double time = course_.time();
+    const double time = integrator_.time();
     oil_.loads(time, mechanics_.block(time, state_.motion), state_.oil.data(), loads_);
     MotionVector rates{};
     mechanics_.rates(time, state_.motion, loads_, rates);
@@ -138,7 +138,7 @@ class ToothWatch::Watcher {
   Mechanics& mechanics_;
   const Oil& oil_;
   double impact_speed_;
-  HybridIntegrator course_;
+  HybridIntegrator integrator_;
   SystemState state_;
   OilLoads loads_;
   std::size_t seen_ = 0;            // events
@@ -154,7 +154,7 @@ ToothWatch::ToothWatch(std::string name, Mechanics& mechanics, const Oil& oil, d
           std::make_unique<Watcher>(std::move(name), mechanics, oil, tolerance, impact_speed)) {}
 ToothWatch::~ToothWatch() = default;
 void ToothWatch::start(const MotionVector& motion) { watcher_->start(motion); }
-ToothStretch ToothWatch::run_to(double time) { return watcher_->run_to(time); }
+ContactInterval ToothWatch::run_to(double time) { return watcher_->run_to(time); }
 const MotionVector& ToothWatch::motion() const { return watcher_->motion(); }
 long ToothWatch::steps() const { return watcher_->steps(); }
 

@@ -13,11 +13,11 @@ constexpr double kSaturationWidth = 0.02;
 constexpr double kVapourWidth = 0.002;
 // Beyond as many widths the rounding is below round-off, or exp(t/b) alone is left of it.
 constexpr double kBeyond = 40;
-// Stretches of s over which the bubbles' volume is summed up by 7 points to round-off: none longer
+// Intervals of s over which the bubbles' volume is summed up by 7 points to round-off: none longer
 // than the first, and near vapour pressure, where it grows without bound but for the rounding, in
 // proportion to the distance.
-constexpr double kLongestStretch = 0.05;
-constexpr double kStretchPerDistance = 0.25;
+constexpr double kLongestInterval = 0.05;
+constexpr double kIntervalPerDistance = 0.25;
 // ln of the lowest and highest pressure over P0 that sums are kept for; beyond, they go on.
 constexpr double kLowest = -40, kHighest = 12;
 
@@ -241,7 +241,7 @@ void Fluid::sum_up_bubbles() {
     places_.push_back(s);
     const double distance = boils_ ? std::abs(s - log_vapour_) : kHighest;
     const double next =
-        s + std::clamp(kStretchPerDistance * distance, kVapourWidth / 2, kLongestStretch);
+        s + std::clamp(kIntervalPerDistance * distance, kVapourWidth / 2, kLongestInterval);
     // Atmospheric pressure, where the potential is exactly 0, and where no air is left.
     if (s < 0 && next > 0)
       s = 0;
@@ -256,7 +256,7 @@ void Fluid::sum_up_bubbles() {
     to.released += sign * more.released;
     to.all += sign * more.all;
   };
-  // Downwards: the last stretches above vapour pressure are the largest by far.
+  // Downwards: the last intervals above vapour pressure are the largest by far.
   for (std::size_t i = places_.size() - 1; i > 0; --i) {
     sums_[i - 1] = sums_[i];
     add(sums_[i - 1], bubbles_between(places_[i - 1], places_[i]), -1);

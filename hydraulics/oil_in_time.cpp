@@ -54,7 +54,8 @@ class OilInTime : public Oil {
     takes.load_share = !network_.fixed_end();
     return takes;
   }
-  void surround(const Surroundings& outside) override {
+  void surround(const Surroundings& outside) override { set_inputs(outside); }
+  void set_inputs(const Surroundings& outside) override {
     outside_ = outside;
     hold(outside.time);
   }
@@ -62,8 +63,8 @@ class OilInTime : public Oil {
   std::vector<OilColumn> state_columns() const override { return network_.state_columns(); }
   // ln of pressures; what the lines have is over pressures and flows of the same kind.
   std::vector<double> scales() const override { return std::vector<double>(start_.size(), 1.0); }
-  std::vector<double> knots() const override {
-    return share_ ? share_->knots() : std::vector<double>();
+  std::vector<double> breakpoints() const override {
+    return share_ ? share_->breakpoints() : std::vector<double>();
   }
 
   std::vector<double> edges_deg() const override {

@@ -145,7 +145,7 @@ void PortOpening::add_geometry(const HydraulicData& data, const PlatePort& port,
 
 void PortOpening::add_table(const OpeningTable& table) {
   const std::size_t n = table.theta_deg.size();
-  std::vector<double> span(n), rise(n), slope(n);  // of the stretch that begins at each point
+  std::vector<double> span(n), rise(n), slope(n);  // of the interval that begins at each point
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t next = (i + 1) % n;
     span[i] = table.theta_deg[next] - table.theta_deg[i] + (next == 0 ? 360 : 0);

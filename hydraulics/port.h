@@ -48,8 +48,8 @@ class PortOpening {
   const std::vector<double>& edges_deg() const { return edges_deg_; }
 
  private:
-  // A stretch of the plate that the kidney passes. `past` is the angle of the kidney's leading edge
-  // in the turn that begins at `first`, which is before the stretch.
+  // A interval of the plate that the kidney passes. `past` is the angle of the kidney's leading
+  // edge in the turn that begins at `first`, which is before the interval.
   class Frame {
    public:
     Frame(double first_deg, double half_width_deg) : first_(first_deg), half_(half_width_deg) {}
@@ -114,7 +114,7 @@ class PortOpening {
   std::vector<double> edges_deg_;
 };
 
-/// A stretch of chamber angles in which both ports are closed, or both are open.
+/// A interval of chamber angles in which both ports are closed, or both are open.
 struct Bridge {
   double from_deg = 0, to_deg = 0;  ///< from in [0, 360), from < to
   bool both_open = false;           ///< negative overlap

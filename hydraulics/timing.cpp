@@ -13,16 +13,16 @@ namespace {
 
 // On every step of the integration.
 constexpr std::size_t kNodes = kBooleNodes;
-// Gaps of a stretch shorter than this are none, degrees.
+// Gaps of a interval shorter than this are none, degrees.
 constexpr double kNoGap = 1e-6;
-// The largest area of a stretch is looked for at as many angles.
+// The largest area of a interval is looked for at as many angles.
 constexpr int kAreaAngles = 1000;
 
-bool inside(const Stretch& where, double theta_deg) {
+bool inside(const AngleInterval& where, double theta_deg) {
   return theta_deg >= where.from_deg - kNoGap && theta_deg <= where.to_deg + kNoGap;
 }
-// An angle of the turn, or the same a turn later, where that is in the stretch.
-bool met(const Stretch& where, double theta_deg) {
+// An angle of the turn, or the same a turn later, where that is in the interval.
+bool met(const AngleInterval& where, double theta_deg) {
   return inside(where, theta_deg) || inside(where, theta_deg + 360);
 }
 
@@ -52,7 +52,7 @@ Timing::Trapped trapped(const Network& network, const Bridge& bridge) {
   return t;
 }
 
-// Where the longest stretch ends that is open to the suction port alone.
+// Where the longest interval ends that is open to the suction port alone.
 std::optional<double> end_of_suction(const Network& network) {
   std::vector<double> edges = network.suction().edges_deg();
   append(edges, network.delivery().edges_deg());
@@ -60,7 +60,7 @@ std::optional<double> end_of_suction(const Network& network) {
   if (edges.empty()) return std::nullopt;
   double length = 0, longest = 0;
   std::optional<double> end;
-  // Two turns: a stretch may go on over 0 degrees.
+  // Two turns: a interval may go on over 0 degrees.
   const std::size_t count = edges.size();
   for (std::size_t i = 0; i < 2 * count; ++i) {
     const double from = edges[i % count];
@@ -79,9 +79,9 @@ std::optional<double> end_of_suction(const Network& network) {
 
 }  // namespace
 
-std::vector<Stretch> stretches_below(const std::vector<double>& theta_deg,
-                                     const std::vector<double>& values, double limit) {
-  std::vector<Stretch> all;
+std::vector<AngleInterval> intervals_below(const std::vector<double>& theta_deg,
+                                           const std::vector<double>& values, double limit) {
+  std::vector<AngleInterval> all;
   for (std::size_t i = 1; i < theta_deg.size(); ++i) {
     double from = theta_deg[i - 1], to = theta_deg[i];
     const double a = values[i - 1] - limit, b = values[i] - limit;
@@ -143,9 +143,9 @@ Timing TimingRecord::timing(double delivery_mean) const {
     s.push_back(node.s);
     delivered.push_back(node.to_delivery);
   }
-  result.below_saturation = stretches_below(theta, s, fluid.log_pressure(fluid.saturation()));
-  result.below_vapour = stretches_below(theta, s, fluid.log_pressure(fluid.vapour()));
-  result.backflow_where = stretches_below(theta, delivered, 0);
+  result.below_saturation = intervals_below(theta, s, fluid.log_pressure(fluid.saturation()));
+  result.below_vapour = intervals_below(theta, s, fluid.log_pressure(fluid.vapour()));
+  result.backflow_where = intervals_below(theta, delivered, 0);
 
   for (const Bridge& bridge : bridges(network_.suction(), network_.delivery()))
     if (bridge.both_open)

@@ -40,8 +40,8 @@ class TimingRecord {
 };
 
 /// Where values over rising angles of a turn are below a limit, straight lines between them; the
-/// last angle is 360 degrees past the first. One stretch over the whole turn: [0, 360].
-std::vector<Stretch> stretches_below(const std::vector<double>& theta_deg,
-                                     const std::vector<double>& values, double limit);
+/// last angle is 360 degrees past the first. One interval over the whole turn: [0, 360].
+std::vector<AngleInterval> intervals_below(const std::vector<double>& theta_deg,
+                                           const std::vector<double>& values, double limit);
 
 }  // namespace bentaxis::hydraulics

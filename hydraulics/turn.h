@@ -65,7 +65,7 @@ class TurnRecord {
   const Network& network_;
   double load_size_;
   std::vector<double> x_, s_, slope_, state_;  // of the nodes; s and slope: pressures() each
-  std::vector<std::size_t> edges_;             // nodes at which a stretch between edges begins
+  std::vector<std::size_t> edges_;             // nodes at which a interval between edges begins
   struct RowPlace {
     double x;
     int row, chamber;

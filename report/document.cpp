@@ -379,10 +379,10 @@ inline void to_json(Json& json, const Verdict& verdict) {
 }
 
 inline void to_json(Json& json, const PlausibilitySection& section) {
-  const auto warning = [](const DoubtRow& row) {
+  const auto warning = [](const PlausibilityRow& row) {
     return Json{{"code", row.code}, {"text", row.text}};
   };
-  const auto meant = [&](const DoubtRow& row) {
+  const auto meant = [&](const PlausibilityRow& row) {
     Json entry = warning(row);
     entry["reason"] = row.reason;
     return entry;

@@ -70,7 +70,7 @@ class OneShaft : public Mechanics {
   bool shaft_is_free() const override { return !given_speed; }
   bool compliant() const override { return false; }
   bool has_motor() const override { return false; }
-  std::vector<double> knots() const override { return {}; }
+  std::vector<double> breakpoints() const override { return {}; }
   AxisMotion shaft(double time, const MotionVector& y) const override {
     const double speed = given_speed.value_or(start_speed);
     return {speed * time + y[kTurn], speed + y[kTurnRate], 0};
@@ -143,8 +143,8 @@ class LinearOil : public Oil {
     for (int i = 0; i < 2 * kPistons; ++i) edges.push_back(180.0 / kPistons * i);
     return edges;
   }
-  std::vector<double> knot_times;
-  std::vector<double> knots() const override { return knot_times; }
+  std::vector<double> breakpoint_times;
+  std::vector<double> breakpoints() const override { return breakpoint_times; }
   std::vector<int> order_after_period() const override {
     std::vector<int> order;  // after 72 degrees piston k+1 is where piston k was
     for (int k = 0; k < kPistons; ++k) order.push_back((k + 1) % kPistons);
@@ -247,6 +247,46 @@ double worst_apart(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 // ---- the integration ---------------------------------------------------------------------------
+
+// Written for 1.0.0, whose names of these two were others.
+class ShaftOf100 : public OneShaft {
+ public:
+  bool told = false;
+  std::vector<double> breakpoints() const override { return Mechanics::breakpoints(); }
+  std::vector<double> knots() const override { return {0.5, 1}; }
+  void surround(const Surroundings& /*outside*/) override { told = true; }
+};
+
+class ShaftOfToday : public OneShaft {
+ public:
+  std::vector<double> breakpoints() const override { return {2}; }
+};
+
+TEST(NamesOf100, OverriddenAreCalled) {
+  ShaftOf100 shaft;
+  Mechanics& mechanics = shaft;
+  EXPECT_THAT(mechanics.breakpoints(), testing::ElementsAre(0.5, 1));
+  mechanics.set_inputs({});
+  EXPECT_TRUE(shaft.told);
+}
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
+TEST(NamesOf100, CalledReachThoseOfToday) {
+  ShaftOfToday shaft;
+  Mechanics& mechanics = shaft;
+  EXPECT_THAT(mechanics.knots(), testing::ElementsAre(2));
+  EXPECT_THROW(mechanics.surround({}), std::logic_error);  // it takes nothing
+  const PressureTrace pressure = no_pressure();
+  const auto oil = coupled::prescribed_oil(kPistons, pressure, {});
+  Surroundings outside;
+  outside.delivery = 3e5;
+  oil->surround(outside);
+  OilLoads loads;
+  oil->loads(0, {}, nullptr, loads);
+  EXPECT_EQ(*std::max_element(loads.chamber_pressure.begin(), loads.chamber_pressure.end()), 3e5);
+}
+#pragma GCC diagnostic pop
 
 // Forwards, to a stop, and backwards, over edges in both directions: known in closed form. The
 // second comes to its stop on an edge, to rounding.
@@ -431,15 +471,15 @@ TEST(Integration, RowsAndHistoryAreOfTheSameInstants) {
   EXPECT_NE(some.record.choice.find("BDF"), std::string::npos);
 }
 
-// A torque that begins to rise at a knot of its own, and what it was asked for.
+// A torque that begins to rise at a breakpoint of its own, and what it was asked for.
 class RisingTorque : public OneShaft {
  public:
   double rises_at = 0.0333;
-  bool tells = true;  // of the knot
+  bool tells = true;  // of the breakpoint
   std::vector<double> times;
 
   RisingTorque() : OneShaft(starting_pump()) {}
-  std::vector<double> knots() const override {
+  std::vector<double> breakpoints() const override {
     return tells ? std::vector<double>{rises_at} : std::vector<double>{};
   }
   void rates(double time, const MotionVector& y, const OilLoads& loads, MotionVector& dy) override {
@@ -448,22 +488,22 @@ class RisingTorque : public OneShaft {
     OneShaft::rates(time, y, loads, dy);
   }
   // A step ended there, and no other reached over it.
-  bool stopped_at(double knot) const {
+  bool stopped_at(double breakpoint) const {
     const auto beyond =
-        std::find_if(times.begin(), times.end(), [&](double t) { return t > knot; });
-    return beyond != times.end() && std::find(times.begin(), beyond, knot) != beyond &&
-           std::all_of(beyond, times.end(), [&](double t) { return t >= knot; });
+        std::find_if(times.begin(), times.end(), [&](double t) { return t > breakpoint; });
+    return beyond != times.end() && std::find(times.begin(), beyond, breakpoint) != beyond &&
+           std::all_of(beyond, times.end(), [&](double t) { return t >= breakpoint; });
   }
 };
 
 TEST(Integration, KnotsEndSteps) {
   LinearOil oil;
-  oil.knot_times = {0.05};
+  oil.breakpoint_times = {0.05};
   RisingTorque shaft, silent;
   const Trajectory with = simulate("toy", shaft, oil, drive_for(0.1, 5), within(1e-10));
   EXPECT_TRUE(shaft.stopped_at(shaft.rises_at));
   EXPECT_TRUE(shaft.stopped_at(0.05));
-  oil.knot_times = {};
+  oil.breakpoint_times = {};
   silent.tells = false;
   const Trajectory without = simulate("toy", silent, oil, drive_for(0.1, 5), within(1e-10));
   EXPECT_FALSE(silent.stopped_at(shaft.rises_at));
@@ -711,7 +751,7 @@ TEST(Steady, RefusesWhatHasNoPeriodicMotion) {
   curve.curve.time = {0, 1, 2, 3};
   EXPECT_THROW(steady("toy", shaft, oil, curve), InputError);
   LinearOil stepped;
-  stepped.knot_times = {0.5};
+  stepped.breakpoint_times = {0.5};
   EXPECT_THROW(steady("toy", shaft, stepped, drive_for(1, 10)), InputError);
   const PressureTrace pressure = no_pressure();
   const auto empty = coupled::prescribed_oil(kPistons, pressure, {});
@@ -1057,9 +1097,9 @@ TEST(PumpWithOil, SimulationsInTwoThreadsAreAsAlone) {
   both(multibody, by_multibody, multibody, by_multibody);
 }
 
-TEST(ToothStretch, TwoAsOneHaveTheirSumsAndTheLargerForce) {
-  const coupled::ToothStretch a{0.1, 0.02, 0.05, 0.03, 900, 7, 3, 2, 0.4};
-  const coupled::ToothStretch b{0.2, 0.01, 0.15, 0.04, 700, 5, 4, 6, 0.9};
+TEST(ContactInterval, TwoAsOneHaveTheirSumsAndTheLargerForce) {
+  const coupled::ContactInterval a{0.1, 0.02, 0.05, 0.03, 900, 7, 3, 2, 0.4};
+  const coupled::ContactInterval b{0.2, 0.01, 0.15, 0.04, 700, 5, 4, 6, 0.9};
   for (const auto& sum : {a + b, b + a}) {
     EXPECT_DOUBLE_EQ(sum.duration, 0.3);
     EXPECT_DOUBLE_EQ(sum.apart, 0.03);

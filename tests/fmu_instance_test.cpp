@@ -134,7 +134,7 @@ TEST(Fmi2, DebugMessagesAreOfTheirCategories) {
   EXPECT_TRUE(events());
 }
 
-std::vector<double> course(Unit2& unit, int steps, double size) {
+std::vector<double> trajectory_of(Unit2& unit, int steps, double size) {
   std::vector<double> all;
   for (int i = 0; i < steps; ++i) {
     unit.steps(1, size);
@@ -151,7 +151,7 @@ TEST(Fmi2, TwoInstancesInterleavedOrInThreadsAreTwoAlone) {
     Unit2 unit(resources);
     EXPECT_EQ(unit.set("drive_speed", speed), fmi2OK);
     unit.start();
-    return course(unit, kSteps, kSize);
+    return trajectory_of(unit, kSteps, kSize);
   };
   const auto one = alone(oil, 157), two = alone(ideal, 100);
   {
@@ -162,8 +162,8 @@ TEST(Fmi2, TwoInstancesInterleavedOrInThreadsAreTwoAlone) {
     a.start();
     std::vector<double> of_a, of_b;
     for (int i = 0; i < kSteps; ++i) {
-      for (const double value : course(a, 1, kSize)) of_a.push_back(value);
-      for (const double value : course(b, 1, kSize)) of_b.push_back(value);
+      for (const double value : trajectory_of(a, 1, kSize)) of_a.push_back(value);
+      for (const double value : trajectory_of(b, 1, kSize)) of_b.push_back(value);
     }
     expect_near(of_a, one, 0);
     expect_near(of_b, two, 0);
@@ -186,14 +186,14 @@ TEST(Fmi2, AStateCanBeTakenUpAgain) {
   fmi2FMUstate state = nullptr;
   ASSERT_EQ(f.fmi2GetFMUstate(unit.it, &state), fmi2OK);
   const auto here = unit.outputs();
-  const auto there = course(unit, 10, 1e-4);
+  const auto there = trajectory_of(unit, 10, 1e-4);
   EXPECT_EQ(unit.set("hydraulics.leakage_l_per_min_per_bar", 1), fmi2Error) << "fixed";
   unit.set("drive_speed", 50);
   unit.steps(2, 1e-4);
   ASSERT_EQ(f.fmi2SetFMUstate(unit.it, state), fmi2OK) << unit.messages.text;
   unit.done = 10;
   expect_near(unit.outputs(), here, 1e-12);
-  expect_near(course(unit, 10, 1e-4), there, 1e-6);
+  expect_near(trajectory_of(unit, 10, 1e-4), there, 1e-6);
 
   // As bytes, in another instance.
   std::size_t size = 0;
@@ -209,7 +209,7 @@ TEST(Fmi2, AStateCanBeTakenUpAgain) {
   ASSERT_EQ(f.fmi2SetFMUstate(other.it, read), fmi2OK) << other.messages.text;
   other.done = 10;
   expect_near(other.outputs(), here, 1e-12);
-  expect_near(course(other, 10, 1e-4), there, 1e-6);
+  expect_near(trajectory_of(other, 10, 1e-4), there, 1e-6);
 
   // Bytes that are none are refused, wherever they are wrong.
   fmi2FMUstate none = nullptr;
@@ -235,12 +235,12 @@ TEST(Fmi2, AStateOfTheStartIsAStartAgain) {
   unit.set("drive_speed", 120);
   ASSERT_EQ(f.fmi2GetFMUstate(unit.it, &state), fmi2OK);
   unit.start();
-  const auto first = course(unit, 5, 1e-3);
+  const auto first = trajectory_of(unit, 5, 1e-3);
   ASSERT_EQ(f.fmi2SetFMUstate(unit.it, state), fmi2OK);
   unit.done = 0;
   unit.start();
   EXPECT_EQ(unit.get("drive_speed"), 120);
-  expect_near(course(unit, 5, 1e-3), first, 0);
+  expect_near(trajectory_of(unit, 5, 1e-3), first, 0);
 }
 
 TEST(Fmi2, ResultsDoNotDependOnTheSizeOfSteps) {

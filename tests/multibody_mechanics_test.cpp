@@ -512,7 +512,7 @@ TEST(MechanicsOfBothModels, AgreeAtRandomStates) {
       EXPECT_EQ(((*a).*body)(motion.time, y).angle, ((*b).*body)(motion.time, y).angle);
       EXPECT_EQ(((*a).*body)(motion.time, y).speed, ((*b).*body)(motion.time, y).speed);
     }
-    EXPECT_EQ(a->knots(), b->knots());
+    EXPECT_EQ(a->breakpoints(), b->breakpoints());
     EXPECT_EQ(a->compliant(), b->compliant());
     EXPECT_EQ(a->has_motor(), b->has_motor());
     EXPECT_EQ(a->shaft_is_free(), b->shaft_is_free());

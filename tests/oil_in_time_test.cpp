@@ -501,8 +501,8 @@ TEST(Load, ShareOverTimeIsTimesTheSize) {
       *one /= 2;
     const auto plain = oil_in_time(the_case, {}), curve = oil_in_time(with_curve, {}),
                halved = oil_in_time(half, {});
-    EXPECT_THAT(curve->knots(), ElementsAre(0, 1, 2, 3));
-    EXPECT_TRUE(plain->knots().empty());
+    EXPECT_THAT(curve->breakpoints(), ElementsAre(0, 1, 2, 3));
+    EXPECT_TRUE(plain->breakpoints().empty());
     std::vector<double> y = plain->start();
     y[5] = 5.3;
     const std::size_t flow = plain->columns().size() - 3;

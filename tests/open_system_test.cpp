@@ -40,7 +40,8 @@ class RungeKutta {
   void run(double end, double step) {
     while (system_.time() < end) {
       double h = std::min(step, end - system_.time());
-      if (const auto knot = system_.next_knot()) h = std::min(h, *knot - system_.time());
+      if (const auto breakpoint = system_.next_breakpoint())
+        h = std::min(h, *breakpoint - system_.time());
       const double time = system_.time();
       const std::vector<double> values = system_.values();
       signs(before_);
@@ -71,7 +72,7 @@ class RungeKutta {
   void set(double time, const std::vector<double>& values) {
     system_.set_time(time);
     system_.set(values);
-    if (outside_) system_.surround(outside_(time));
+    if (outside_) system_.set_inputs(outside_(time));
   }
   void advance(double time, const std::vector<double>& y, double h) {
     std::array<std::vector<double>, 4> k;
@@ -148,7 +149,7 @@ TEST(OpenSystem, TorqueIsAsStepped) {
   EXPECT_NEAR(system.values()[1], shaft.speed, 1e-12);
 }
 
-// The case's own speed over time: no state of the shaft, and knots at which a step must end.
+// The case's own speed over time: no state of the shaft, and breakpoints at which a step must end.
 TEST(OpenSystem, KnotsOfACurveAreKept) {
   Case c = rated();
   const double omega = rad_per_second(c.operation.speed_rpm);
@@ -158,11 +159,11 @@ TEST(OpenSystem, KnotsOfACurveAreKept) {
   coupled::OpenSystem system(*open.mechanics, *open.oil, false);
   system.start(0, open.start());
   EXPECT_THAT(system.states()[0].name, testing::StartsWith("oil."));
-  EXPECT_EQ(system.next_knot(), 0.001);
+  EXPECT_EQ(system.next_breakpoint(), 0.001);
   system.set_time(0.001);
-  EXPECT_EQ(system.next_knot(), 0.0021);
+  EXPECT_EQ(system.next_breakpoint(), 0.0021);
   system.set_time(0.01);
-  EXPECT_EQ(system.next_knot(), std::nullopt);
+  EXPECT_EQ(system.next_breakpoint(), std::nullopt);
   system.start(0, open.start());
   RungeKutta integrator(system, {});
   integrator.run(0.004, 2e-7);
@@ -220,7 +221,7 @@ TEST(OpenSystem, EdgesBothWays) {
     system.set(state);
     Surroundings outside;
     outside.shaft = AxisMotion{0, speed, 0};
-    system.surround(outside);
+    system.set_inputs(outside);
     system.indicator_values(values);
     return std::min(values[0], values[1]);
   };

@@ -57,7 +57,7 @@ RattlePoint point_at(const Case& c, double rpm, double bar) {
 }
 
 TEST(Rattle, StretchesHaveTheirClass) {
-  coupled::ToothStretch s;
+  coupled::ContactInterval s;
   s.duration = s.plus = 1;
   EXPECT_EQ(class_of(s), RattleClass::carries);
   s.plus = 0.5;
@@ -140,7 +140,7 @@ TEST(Rattle, WedgedTeethTouchOnBothFlanks) {
       coupled::prescribed_oil(c.pump.geometry.pistons, ready.pressure, c.pressure.ports);
   coupled::ToothWatch watch("analytic", *mechanics, *oil, 1e-8, kImpactSpeed);
   watch.start(mechanics->start());
-  coupled::ToothStretch all;
+  coupled::ContactInterval all;
   double plus = 0, minus = 0, apart = 0;
   constexpr int kParts = 2000;
   for (int i = 0; i < kParts; ++i) {
@@ -249,8 +249,8 @@ TEST(Rattle, TheWatchSeesWhatASimulationSees) {
   const auto mechanics = analytic::mechanics(c, c.analytic);
   coupled::ToothWatch watch("analytic", *mechanics, *oil, 1e-10, kImpactSpeed);
   watch.start(mechanics->start());
-  const coupled::ToothStretch first = watch.run_to(0.0015);
-  const coupled::ToothStretch all = first + watch.run_to(0.004);
+  const coupled::ContactInterval first = watch.run_to(0.0015);
+  const coupled::ContactInterval all = first + watch.run_to(0.004);
 
   const auto& events = truth.record.events;
   const auto touches = std::count_if(events.begin(), events.end(), [](const ToothEvent& e) {
@@ -340,7 +340,7 @@ TEST(Rattle, APointIsTheMeanOfItsTurns) {
   constexpr double kTurn = 60 / kRpm;
   double apart = 0, plus = 0, impulse = 0, impacts = 0, least = INFINITY, largest = 0, hit = 0;
   for (int n = 1; n <= 3; ++n) {
-    const coupled::ToothStretch s = watch.run_to(n * kTurn);
+    const coupled::ContactInterval s = watch.run_to(n * kTurn);
     apart += s.apart;
     plus += s.plus;
     impulse += s.impulse;
@@ -377,7 +377,7 @@ TEST(Rattle, AWatchBeginsAnew) {
   };
   int n = 0;
   while (!at_top(n) && n < 20000) {
-    const coupled::ToothStretch s = used.watch.run_to(++n * kStretch);
+    const coupled::ContactInterval s = used.watch.run_to(++n * kStretch);
     if (s.apart > 0) {
       touching.reset();
       continue;
@@ -390,7 +390,7 @@ TEST(Rattle, AWatchBeginsAnew) {
   }
   ASSERT_TRUE(at_top(n));
   for (Watched* w : {&used, &fresh}) w->watch.start(*touching);
-  const coupled::ToothStretch a = used.watch.run_to(1e-7), b = fresh.watch.run_to(1e-7);
+  const coupled::ContactInterval a = used.watch.run_to(1e-7), b = fresh.watch.run_to(1e-7);
   EXPECT_GT(b.largest, 0);
   EXPECT_LT(b.largest, now);
   EXPECT_EQ(a.largest, b.largest);

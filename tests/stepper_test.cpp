@@ -106,12 +106,12 @@ TEST(Stepper, FailureLeavesTheLastPoint) {
   const std::vector<double> here = pump.row(0.001, stepper.state());
   Surroundings impossible;
   impossible.torque = std::nan("");
-  stepper.surround(impossible);
+  stepper.set_inputs(impossible);
   EXPECT_THROW(stepper.step_to(0.002), ComputationError);
   EXPECT_EQ(stepper.time(), 0.001);
   Surroundings outside;
   outside.torque = 250;
-  stepper.surround(outside);
+  stepper.set_inputs(outside);
   EXPECT_EQ(pump.row(0.001, stepper.state())[1], here[1]);
   stepper.step_to(0.002);
   EXPECT_EQ(stepper.time(), 0.002);
@@ -179,7 +179,7 @@ TEST(Surroundings, WhatTheCaseSaysChangesNothing) {
     outside.shaft = AxisMotion{omega * outside.time, omega, 0};
     outside.suction = 0;
     outside.load_share = 1;
-    stepper.surround(outside);
+    stepper.set_inputs(outside);
     stepper.step_to(0.01 * i / 20);
     rows.add(pump.row(stepper.time(), stepper.state()));
   }
@@ -214,7 +214,7 @@ TEST(Surroundings, SpeedToldAtPointsIsTheCurve) {
       const AxisMotion at = steered.mechanics->shaft(now, stepper.state().motion);
       outside.shaft = AxisMotion{at.angle, curve.value(now),
                                  (curve.value(next) - curve.value(now)) / (next - now)};
-      stepper.surround(outside);
+      stepper.set_inputs(outside);
       if (i % (points / 20) == 0) {
         std::vector<double> row = steered.row(now, stepper.state());
         rows.add({row[1], row[2], row[row.size() - 6], row[row.size() - 3]});
@@ -245,7 +245,7 @@ TEST(Surroundings, LoadShareIsThatOfTheLoad) {
   stepper.start(0, pump.start(), 0.01);
   Surroundings outside;
   outside.load_share = 0.8;
-  stepper.surround(outside);
+  stepper.set_inputs(outside);
   Rows rows;
   rows.add(pump.row(0, stepper.state()));
   for (int i = 1; i <= 10; ++i) {
@@ -266,7 +266,7 @@ TEST(Surroundings, PortsOfAnIdealTrace) {
   Surroundings outside;
   outside.suction = 3 * kPascal;
   outside.delivery = 200 * kPascal;
-  pump.oil->surround(outside);
+  pump.oil->set_inputs(outside);
   OilLoads a, b;
   for (double angle = 0; angle < 7; angle += 0.1) {
     const AxisMotion block{angle, 100, 0};
@@ -289,7 +289,7 @@ TEST(Surroundings, SuctionPressureIsThatOfTheTank) {
   const auto pressures = [&](PumpInTime& of, const Surroundings& outside) {
     coupled::Stepper stepper("analytic", *of.mechanics, *of.oil, kTolerance);
     stepper.start(0, start, 0.01);
-    stepper.surround(outside);
+    stepper.set_inputs(outside);
     Rows rows;
     for (int i = 1; i <= 20; ++i) {
       stepper.step_to(0.0005 * i);
@@ -308,7 +308,7 @@ TEST(Surroundings, WhatTheDriveDoesNotTakeIsRefused) {
   PumpInTime pump(rated(0.01, 10));
   Surroundings outside;
   outside.torque = 10;
-  EXPECT_THAT(refusal([&] { pump.mechanics->surround(outside); }),
+  EXPECT_THAT(refusal([&] { pump.mechanics->set_inputs(outside); }),
               testing::HasSubstr("[drive] kind: must be \"torque\""));
 }
 
@@ -322,8 +322,8 @@ TEST(Surroundings, BothModelsTakeThem) {
   Surroundings outside;
   outside.time = 0.001;
   outside.shaft = AxisMotion{0.2, 120, 3000};
-  pump.mechanics->surround(outside);
-  other->surround(outside);
+  pump.mechanics->set_inputs(outside);
+  other->set_inputs(outside);
   const MotionVector y{};
   OilLoads loads;
   loads.chamber_pressure = {1e5, 2e6, 2.7e7, 2.6e7, 1e4};

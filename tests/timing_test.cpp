@@ -18,8 +18,8 @@
 namespace bentaxis::study {
 namespace {
 
+using hydraulics::AngleInterval;
 using hydraulics::SteadyState;
-using hydraulics::Stretch;
 using hydraulics::Timing;
 using test::scaled;
 
@@ -55,19 +55,19 @@ const TimingRow& row_of(const std::vector<TimingRow>& rows, const std::string& c
                        [&](const TimingRow& r) { return r.code == code; });
 }
 
-double extent(const std::vector<Stretch>& all) {
+double extent(const std::vector<AngleInterval>& all) {
   double sum = 0;
-  for (const Stretch& s : all) sum += s.to_deg - s.from_deg;
+  for (const AngleInterval& s : all) sum += s.to_deg - s.from_deg;
   return sum;
 }
 
 TEST(Stretches, StraightLinesAreCutWhereTheyCrossAndGoOnOverZero) {
-  const auto all = hydraulics::stretches_below({0, 90, 90, 180, 270, 360}, {-1, 1, 1, 3, 1, -1}, 0);
+  const auto all = hydraulics::intervals_below({0, 90, 90, 180, 270, 360}, {-1, 1, 1, 3, 1, -1}, 0);
   ASSERT_EQ(all.size(), 1U);
   EXPECT_DOUBLE_EQ(all[0].from_deg, 315);
   EXPECT_DOUBLE_EQ(all[0].to_deg, 405);
-  EXPECT_TRUE(hydraulics::stretches_below({0, 180, 360}, {0, 0, 0}, 0).empty());
-  const auto whole = hydraulics::stretches_below({0, 180, 360}, {-1, -2, -1}, 0);
+  EXPECT_TRUE(hydraulics::intervals_below({0, 180, 360}, {0, 0, 0}, 0).empty());
+  const auto whole = hydraulics::intervals_below({0, 180, 360}, {-1, -2, -1}, 0);
   ASSERT_EQ(whole.size(), 1U);
   EXPECT_DOUBLE_EQ(whole[0].to_deg - whole[0].from_deg, 360);
 }
@@ -80,7 +80,7 @@ TEST(Timing, StretchesAreThoseOfTheSummary) {
   EXPECT_NEAR(extent(state.timing.below_saturation), state.summary.below_saturation_deg, 0.01);
   EXPECT_NEAR(extent(state.timing.below_vapour), state.summary.below_vapour_deg, 0.01);
   EXPECT_GT(state.summary.below_vapour_deg, 1);
-  for (const Stretch& s : state.timing.below_vapour) {
+  for (const AngleInterval& s : state.timing.below_vapour) {
     EXPECT_LT(state.computed->gauge((s.from_deg + s.to_deg) / 2), state.summary.vapour);
     EXPECT_NEAR(state.computed->gauge(s.from_deg), state.summary.vapour, 10);  // Pa
   }

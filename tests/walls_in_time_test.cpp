@@ -263,7 +263,7 @@ TEST(WallsUnderPressure, WatchAddsUpTheTouchesOfAllPistons) {
   const Case the_case = free_pistons();
   const Trajectory run = prescribed(the_case, 1e-10);
   const double end = the_case.drive->duration;
-  coupled::ToothStretch wanted;
+  coupled::ContactInterval wanted;
   std::map<int, int> side;  // of the pistons that touch
   double since = 0;
   const auto pass = [&](double until) {
@@ -290,7 +290,7 @@ TEST(WallsUnderPressure, WatchAddsUpTheTouchesOfAllPistons) {
   const auto mechanics = mechanics_of(the_case, false);
   coupled::ToothWatch watch("analytic", *mechanics, *oil, 1e-10, 1e-3);
   watch.start(mechanics->start());
-  const coupled::ToothStretch found = watch.run_to(end);
+  const coupled::ContactInterval found = watch.run_to(end);
   EXPECT_GT(wanted.separations, 10);
   EXPECT_GT(wanted.apart, 0.01 * end);
   EXPECT_EQ(found.separations, wanted.separations);

@@ -106,7 +106,7 @@ std::array<Response, 2> Equations::respond(const Accelerations<double>& first,
   return responses_.at(instant_, first, second, modes(), &piston_powers_);
 }
 
-void Equations::surround(const Surroundings& outside) {
+void Equations::set_inputs(const Surroundings& outside) {
   require_drive(drive_, outside);
   outside_ = outside;
 }
@@ -203,8 +203,8 @@ State Equations::scales() const {
   return scale;
 }
 
-std::vector<double> Equations::knots() const {
-  return curve_ && drive_.kind != DriveKind::motor ? curve_->knots() : std::vector<double>();
+std::vector<double> Equations::breakpoints() const {
+  return curve_ && drive_.kind != DriveKind::motor ? curve_->breakpoints() : std::vector<double>();
 }
 
 void Equations::set_speeds(double time, const State& y) {

@@ -43,7 +43,7 @@ class Equations {
   const Model& model() const { return model_; }
   const DriveSpec& drive() const { return drive_; }
   /// From now on these act from outside.
-  void surround(const Surroundings& outside);
+  void set_inputs(const Surroundings& outside);
   /// Whether the block has a motion of its own.
   bool compliant() const { return law_ || bevel_ || walls_; }
   const std::optional<Walls>& walls() const { return walls_; }
@@ -55,7 +55,7 @@ class Equations {
   /// same part of their peak, or so.
   State scales() const;
   /// Times at which what drives the shaft changes its law, s.
-  std::vector<double> knots() const;
+  std::vector<double> breakpoints() const;
 
   /// From now on rates() are those of the teeth alone: no work is added up. Of a gear with a
   /// contact law whose shaft has a given speed.

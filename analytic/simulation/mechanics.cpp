@@ -28,12 +28,13 @@ class ClosedForm : public Mechanics {
 
   const ChannelLayout& layout() const override { return equations_.model().layout(); }
   MotionVector start() const override { return equations_.start({}); }
-  void surround(const Surroundings& outside) override { equations_.surround(outside); }
+  void surround(const Surroundings& outside) override { set_inputs(outside); }
+  void set_inputs(const Surroundings& outside) override { equations_.set_inputs(outside); }
   MotionVector scales() const override { return equations_.scales(); }
   bool shaft_is_free() const override { return equations_.drive().kind != DriveKind::speed; }
   bool compliant() const override { return equations_.compliant(); }
   bool has_motor() const override { return equations_.drive().kind == DriveKind::motor; }
-  std::vector<double> knots() const override { return equations_.knots(); }
+  std::vector<double> breakpoints() const override { return equations_.breakpoints(); }
 
   AxisMotion shaft(double time, const MotionVector& y) const override {
     return equations_.shaft(time, y);

@@ -77,11 +77,11 @@ class Simulation {
     potential_ = potential_energy();
     next_ = drive.duration * kFirstStep;
     note_piece();
-    for (const double knot : equations_.knots()) knots_.push_back(knot);
+    for (const double breakpoint : equations_.breakpoints()) breakpoints_.push_back(breakpoint);
     for (const double stop : stops) {
       while (time_ < stop) {
-        const auto knot = std::upper_bound(knots_.begin(), knots_.end(), time_);
-        advance(knot != knots_.end() ? std::min(*knot, stop) : stop);
+        const auto breakpoint = std::upper_bound(breakpoints_.begin(), breakpoints_.end(), time_);
+        advance(breakpoint != breakpoints_.end() ? std::min(*breakpoint, stop) : stop);
       }
       at_stop();
     }
@@ -359,7 +359,7 @@ class Simulation {
   Stepper stepper_, row_stepper_;
   PressureInterval interval_;
   Contacts contacts_;
-  std::vector<double> knots_, row_;
+  std::vector<double> breakpoints_, row_;
   double time_ = 0, next_ = 0, apart_ = 0, kinetic_ = 0, potential_ = 0;
   State y_ = {};
   Present present_;

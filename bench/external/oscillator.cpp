@@ -245,7 +245,7 @@ class Oscillator : public Mechanics {
   bool shaft_is_free() const override { return false; }
   bool compliant() const override { return true; }
   bool has_motor() const override { return false; }
-  std::vector<double> knots() const override { return {}; }
+  std::vector<double> breakpoints() const override { return {}; }
   AxisMotion shaft(double time, const MotionVector&) const override {
     return {of_.frequency / kPistons * time, of_.frequency / kPistons, 0};
   }

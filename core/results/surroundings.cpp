@@ -4,6 +4,7 @@
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/results/mechanics.h"
+#include "bentaxis/results/oil.h"
 
 namespace bentaxis {
 
@@ -48,9 +49,22 @@ std::optional<double> Surroundings::load_share_at(double at) const {
   return along(load_share, load_share_rate, at - time);
 }
 
+// Programs of 1.0.0 override surround() and knots(), which these names call; what is of today
+// overrides these.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
+void Mechanics::set_inputs(const Surroundings& outside) { surround(outside); }
+std::vector<double> Mechanics::breakpoints() const { return knots(); }
+void Oil::set_inputs(const Surroundings& outside) { surround(outside); }
+std::vector<double> Oil::breakpoints() const { return knots(); }
+#pragma GCC diagnostic pop
+
 void Mechanics::surround(const Surroundings& /*outside*/) {
   throw std::logic_error("this model takes no drive or load from outside");
 }
+std::vector<double> Mechanics::knots() const { return breakpoints(); }
+void Oil::surround(const Surroundings& /*outside*/) {}
+std::vector<double> Oil::knots() const { return breakpoints(); }
 
 void require_drive(const DriveSpec& drive, const Surroundings& outside) {
   if (outside.shaft && drive.kind != DriveKind::speed)

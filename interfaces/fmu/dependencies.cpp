@@ -88,9 +88,9 @@ class Finder {
     std::copy(motion.begin(), motion.end(), base_.motion.begin());
     base_.oil = machine.oil->start();
     base_.load_size = load_size_of(case_);
-    knots_ = machine.mechanics->knots();
-    for (const double knot : machine.oil->knots()) knots_.push_back(knot);
-    std::sort(knots_.begin(), knots_.end());
+    breakpoints_ = machine.mechanics->breakpoints();
+    for (const double breakpoint : machine.oil->breakpoints()) breakpoints_.push_back(breakpoint);
+    std::sort(breakpoints_.begin(), breakpoints_.end());
   }
 
   Dependencies find() {
@@ -157,12 +157,14 @@ class Finder {
     Point point;
     const double omega = std::max(std::abs(rad_per_second(case_.operation.speed_rpm)), 50.0);
     const auto speed = [&] { return random_.sign() * omega * random_.power_of_ten(-3, 0.2); };
-    const double end = std::max(case_.drive->duration, knots_.empty() ? 0.0 : knots_.back());
+    const double end =
+        std::max(case_.drive->duration, breakpoints_.empty() ? 0.0 : breakpoints_.back());
     point.time = random_.between(0, end);
-    if (!knots_.empty() && !random_.once_in(4)) {  // within one of the intervals between knots
+    if (!breakpoints_.empty() &&
+        !random_.once_in(4)) {  // within one of the intervals between breakpoints
       const auto which =
-          static_cast<std::size_t>(random_.between(0, static_cast<double>(knots_.size())));
-      point.time = random_.between(which == 0 ? 0 : knots_[which - 1], knots_[which]);
+          static_cast<std::size_t>(random_.between(0, static_cast<double>(breakpoints_.size())));
+      point.time = random_.between(which == 0 ? 0 : breakpoints_[which - 1], breakpoints_[which]);
     }
     point.inputs = plant.inputs();
     point.inputs.speed = speed();
@@ -613,7 +615,7 @@ class Finder {
   std::vector<double> values_;  // of parameters, by reference
   std::vector<std::vector<double>> sets_;
   PlantState base_;
-  std::vector<double> knots_;
+  std::vector<double> breakpoints_;
   Random random_;
   std::vector<double> rates_, indicators_;
   std::vector<std::vector<Change>> running_, by_parameter_, by_parameter_at_start_;

@@ -42,7 +42,7 @@ CaseDrive::CaseDrive(const Case& the_case)
       omega_(rad_per_second(the_case.operation.speed_rpm)),
       curve_(spec_.curve.time.empty() ? std::nullopt : std::optional<TimeSignal>(spec_.curve)) {}
 
-void CaseDrive::surround(const Surroundings& outside) {
+void CaseDrive::set_inputs(const Surroundings& outside) {
   require_drive(spec_, outside);
   outside_ = outside;
 }
@@ -86,8 +86,8 @@ double CaseDrive::start_torque() const {
   return is_motor() && curve_ ? curve_->value(speed) : spec_.torque;
 }
 
-std::vector<double> CaseDrive::knots() const {
-  return curve_ && !is_motor() ? curve_->knots() : std::vector<double>();
+std::vector<double> CaseDrive::breakpoints() const {
+  return curve_ && !is_motor() ? curve_->breakpoints() : std::vector<double>();
 }
 
 }  // namespace bentaxis::multibody

@@ -29,7 +29,7 @@ class CaseDrive {
   bool gives_speed() const { return spec_.kind == DriveKind::speed; }
   bool is_motor() const { return spec_.kind == DriveKind::motor; }
   /// From now on these act from outside.
-  void surround(const Surroundings& outside);
+  void set_inputs(const Surroundings& outside);
   /// For a pump that it outlives.
   DriveInTime in_time() const;
   /// Of the shaft, where its speed is given.
@@ -38,7 +38,7 @@ class CaseDrive {
   double start_speed() const;
   double start_torque() const;
   /// Times at which the law changes, s; that of a motor never does.
-  std::vector<double> knots() const;
+  std::vector<double> breakpoints() const;
 
  private:
   double motor_torque(double rotor_speed) const;

@@ -64,8 +64,9 @@ class MultibodyMechanics : public Mechanics {
     if (has_motor()) y[kTwist] = drive_.start_torque() / motor().coupling_stiffness;
     return y;
   }
-  void surround(const Surroundings& outside) override {
-    drive_.surround(outside);
+  void surround(const Surroundings& outside) override { set_inputs(outside); }
+  void set_inputs(const Surroundings& outside) override {
+    drive_.set_inputs(outside);
     placed_.reset();
   }
   MotionVector scales() const override { return scales_; }
@@ -73,7 +74,7 @@ class MultibodyMechanics : public Mechanics {
   bool compliant() const override { return has_law() || has_bevel() || walls() != nullptr; }
   bool carried_by_pistons() const override { return walls() != nullptr; }
   bool has_motor() const override { return drive_.is_motor(); }
-  std::vector<double> knots() const override { return drive_.knots(); }
+  std::vector<double> breakpoints() const override { return drive_.breakpoints(); }
 
   AxisMotion shaft(double time, const MotionVector& y) const override {
     if (drive_.gives_speed()) {

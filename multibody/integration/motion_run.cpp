@@ -325,18 +325,18 @@ void MotionRun::advance_to(double time) {
 
 void MotionRun::run(Trajectory& trajectory, const Progress& progress) {
   const std::vector<double> rows = trajectory_times(spec_);
-  std::vector<double> knots;
-  for (const double knot : drive_.knots())
-    if (knot > 0 && knot < spec_.duration) knots.push_back(knot);
+  std::vector<double> breakpoints;
+  for (const double breakpoint : drive_.breakpoints())
+    if (breakpoint > 0 && breakpoint < spec_.duration) breakpoints.push_back(breakpoint);
   stepper_.alive = [&] {
     if (progress) progress(std::min(1.0, stepper_.time() / spec_.duration));
   };
   try {
     stepper_.start(system_.dynamics());
-    std::size_t knot = 0;
+    std::size_t breakpoint = 0;
     for (const double row : rows) {
-      for (; knot < knots.size() && knots[knot] < row; ++knot) {
-        advance_to(knots[knot]);
+      for (; breakpoint < breakpoints.size() && breakpoints[breakpoint] < row; ++breakpoint) {
+        advance_to(breakpoints[breakpoint]);
         stepper_.restart();
       }
       advance_to(row);

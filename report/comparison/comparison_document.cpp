@@ -294,8 +294,8 @@ void add_other_pump(report::Document& document, const ComparisonResult& r) {
   report::PlausibilitySection second = plausibility_section(r.other->plausibility);
   first.summary = fmt::format("{}: {}; {}: {}", r.pump_of(Model::analytic), first.summary,
                               r.pump_of(Model::multibody), second.summary);
-  add_rows(first.warnings, std::move(second.warnings), &report::DoubtRow::text, r);
-  add_rows(first.meant, std::move(second.meant), &report::DoubtRow::text, r);
+  add_rows(first.warnings, std::move(second.warnings), &report::PlausibilityRow::text, r);
+  add_rows(first.meant, std::move(second.meant), &report::PlausibilityRow::text, r);
   add_rows(*document.validity, validity_section(r.other->limits), &report::ValidityRow::limit, r);
   std::vector<TimingRow> timing;
   if (r.second.hydraulics) timing = timing_rows(r.second.the_case, *r.second.hydraulics);

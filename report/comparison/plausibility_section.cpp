@@ -11,7 +11,7 @@ namespace bentaxis::study {
 
 report::PlausibilitySection plausibility_section(const Plausibility& looked) {
   const auto rows = [](const std::vector<PlausibilityWarning>& doubts) {
-    std::vector<report::DoubtRow> list;
+    std::vector<report::PlausibilityRow> list;
     for (const PlausibilityWarning& doubt : doubts)
       list.push_back({doubt.code, doubt.text, doubt.reason});
     return list;

@@ -95,7 +95,7 @@ std::vector<std::string> sentences_of(const Said& said) {
   return answers;
 }
 
-// A course that a pump does not survive, or that the oil's law was not made for.
+// A trajectory that a pump does not survive, or that the oil's law was not made for.
 std::vector<report::Warning> doubts_of(const SimulationResult& r) {
   constexpr double kNearVacuum = 0.1;  // of the atmosphere
   constexpr double kOverspeed = 3;     // of the speed of [operation]

@@ -22,7 +22,7 @@ constexpr double kTooMuchToJudge = 0.05;
 
 // A model under way.
 struct Runner : WatchedModel {
-  coupled::ToothStretch judged, whole;
+  coupled::ContactInterval judged, whole;
 
   Runner(const PreparedCase& ready, Model model, const RattlePoint& from, double disturbance)
       : WatchedModel(ready, model, kCheckTolerance, from.lag, from.lag_rate, disturbance) {}
@@ -86,7 +86,7 @@ RattleCheck check_point(const RattleMap& map, std::size_t row, std::size_t speed
   double growth = 1;
   bool judging = true;
   for (int n = 1; n <= check.parts; ++n) {
-    coupled::ToothStretch of[2];
+    coupled::ContactInterval of[2];
     int model = 0;
     for (Runner* runner : {&analytic, &multibody}) {
       of[model] = runner->watch.run_to(n * part);

@@ -15,8 +15,8 @@
 
 namespace bentaxis::study {
 
-/// What the stretch's teeth do.
-RattleClass class_of(const coupled::ToothStretch& stretch);
+/// What the interval's teeth do.
+RattleClass class_of(const coupled::ContactInterval& interval);
 /// Error per step, of each state's scale, for a wanted error of the reactions.
 double step_tolerance(double error);
 

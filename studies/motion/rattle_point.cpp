@@ -17,7 +17,7 @@ constexpr double kLoosestStep = 1e-5, kTightestStep = 1e-12;
 // A turn with where it began.
 struct Turn {
   double lag, lag_rate;
-  coupled::ToothStretch teeth;
+  coupled::ContactInterval teeth;
 };
 
 class Settling {
@@ -43,7 +43,7 @@ class Settling {
 
   RattlePoint point(int observed) const {
     RattlePoint p;
-    coupled::ToothStretch all;
+    coupled::ContactInterval all;
     p.least_turn = INFINITY;
     for (auto turn = turns_.end() - observed; turn != turns_.end(); ++turn) {
       all = all + turn->teeth;
@@ -112,7 +112,7 @@ RattlePoint rigid_point(const PreparedCase& ready) {
 
 }  // namespace
 
-RattleClass class_of(const coupled::ToothStretch& s) {
+RattleClass class_of(const coupled::ContactInterval& s) {
   const bool both = s.plus > 0 && s.minus > 0;
   // Teeth of unequal pitch may press on the other flank while one touches throughout.
   const bool throughout = std::max(s.plus, s.minus) >= (1 - kNoGap) * s.duration;

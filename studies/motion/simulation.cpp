@@ -10,7 +10,7 @@ namespace bentaxis::study {
 namespace {
 
 // What changes in time leaves no motion that repeats itself.
-void refuse_course(const Case& the_case) {
+void refuse_trajectory(const Case& the_case) {
   const auto refuse = [&](const char* key, const std::filesystem::path& file) {
     throw InputError(fmt::format(
         "{}{} = \"{}\": must be left out for a periodic motion (--steady): it changes in time",
@@ -50,7 +50,7 @@ PreparedCase prepare_simulation(Case the_case, const SimulationChoice& choice,
       throw InputError(
           "--steady: not possible with --fmu, because an FMU need not be periodic; simulate from "
           "the start");
-    refuse_course(the_case);
+    refuse_trajectory(the_case);
     if (the_case.pump.gear.contact == ToothContact::teeth)
       throw InputError(
           "--steady: with [gear] contact = \"teeth\" the period is at least one turn, but --steady "

@@ -53,24 +53,24 @@ void hold(TimingRow& r, double limit) {
   r.flagged = r.value > limit;
 }
 
-double extent(const std::vector<hydraulics::Stretch>& stretches) {
+double extent(const std::vector<hydraulics::AngleInterval>& intervals) {
   double sum = 0;
-  for (const auto& s : stretches) sum += s.to_deg - s.from_deg;
+  for (const auto& s : intervals) sum += s.to_deg - s.from_deg;
   return sum;
 }
 
-void add_angles(TimingRow& r, const std::vector<hydraulics::Stretch>& stretches) {
-  for (const auto& s : stretches) r.angles.emplace_back(s.from_deg, s.to_deg);
+void add_angles(TimingRow& r, const std::vector<hydraulics::AngleInterval>& intervals) {
+  for (const auto& s : intervals) r.angles.emplace_back(s.from_deg, s.to_deg);
 }
 
 template <class Parts>
-std::vector<hydraulics::Stretch> where_of(const Parts& parts) {
-  std::vector<hydraulics::Stretch> all;
+std::vector<hydraulics::AngleInterval> where_of(const Parts& parts) {
+  std::vector<hydraulics::AngleInterval> all;
   for (const auto& part : parts) all.push_back(part.where);
   return all;
 }
 
-TimingRow below(const std::string& code, const std::vector<hydraulics::Stretch>& where,
+TimingRow below(const std::string& code, const std::vector<hydraulics::AngleInterval>& where,
                 double pressure, const hydraulics::Summary& s) {
   TimingRow r = row(code, extent(where));
   add_angles(r, where);

@@ -263,7 +263,7 @@ class Scorer {
     say_holes();
   }
 
-  // Stretches without rows.
+  // Intervals without rows.
   void say_holes() {
     std::vector<double> xs;
     for (const Row& row : rows_) xs.push_back(row.place.x);

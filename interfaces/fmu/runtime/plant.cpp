@@ -156,8 +156,8 @@ class Plant::Implementation {
     inputs_ = inputs;
     outside_ = surroundings(shaft);
     fresh_ = false;
-    if (stepper_) stepper_->surround(outside_);
-    if (open_) open_->surround(outside_);
+    if (stepper_) stepper_->set_inputs(outside_);
+    if (open_) open_->set_inputs(outside_);
   }
 
   double time() const { return time_; }
@@ -303,12 +303,12 @@ class Plant::Implementation {
   void stand(const Surroundings& outside, const std::vector<double>& values) {
     fresh_ = false;
     if (open_) {
-      open_->surround(outside);
+      open_->set_inputs(outside);
       open_->set(values);
       return;
     }
-    machine_->mechanics->surround(outside);
-    machine_->oil->surround(outside);
+    machine_->mechanics->set_inputs(outside);
+    machine_->oil->set_inputs(outside);
   }
 
   // Values of unknowns under other inputs and states, at the present time.
@@ -406,16 +406,16 @@ class Plant::Implementation {
                                                     *machine_->oil, choice_.tolerance);
       const double beyond = time_ + machine_->the_case.drive->duration;
       stepper_->start(time_, state_, end_ > time_ ? end_ : beyond);
-      stepper_->surround(outside_);
+      stepper_->set_inputs(outside_);
       return;
     }
     open_ = std::make_unique<coupled::OpenSystem>(*machine_->mechanics, *machine_->oil,
                                                   choice_.drive == Drive::speed);
     nominals_.clear();
     for (const coupled::OpenState& state : open_->states()) nominals_.push_back(state.nominal);
-    machine_->mechanics->surround(outside_);
+    machine_->mechanics->set_inputs(outside_);
     open_->start(time_, state_);
-    open_->surround(outside_);
+    open_->set_inputs(outside_);
   }
 
   void refresh() {
@@ -522,7 +522,7 @@ std::size_t Plant::indicator_count() const { return it_->open().indicators().siz
 void Plant::indicators(std::vector<double>& values) { it_->open().indicator_values(values); }
 Plant::Event Plant::pass_event() {
   it_->open().pass_event();
-  return {false, it_->open().next_knot()};
+  return {false, it_->open().next_breakpoint()};
 }
 bool Plant::wants_event() { return it_->open().beyond(); }
 std::vector<double> Plant::directional_derivative(const std::vector<const Variable*>& unknowns,

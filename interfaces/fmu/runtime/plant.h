@@ -101,11 +101,12 @@ class Plant {
   void indicators(std::vector<double>& values);
   struct Event {
     bool states_changed = false;
-    std::optional<double> next_time;  ///< s, of a knot of a curve
+    std::optional<double> next_time;  ///< s, of a breakpoint of a curve
   };
   /// Enters what lies beyond the events at the present time.
   Event pass_event();
-  /// Whether a step that has ended should be an event (a knot has been reached, a hidden touch).
+  /// Whether a step that has ended should be an event (a breakpoint has been reached, a hidden
+  /// touch).
   bool wants_event();
   /// d(unknown)/d(known) seed, where both are states, derivatives, continuous inputs or outputs; by
   /// roles and places of `variables`.

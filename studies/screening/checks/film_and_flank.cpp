@@ -51,8 +51,8 @@ std::vector<Check> film_and_flank() {
              "block balance (push of the lands over bottom areas and spring) is {} (lands {:.4g} "
              "N, bottom_area_mm2 = {:.6g} and spring_force_N = {:.6g} make {:.4g} N)",
              by_ideal_pressure(f), 100 * limit->violated_share, limit->worst, limit->theta_deg,
-             block_balance_text(*f.turn), f.turn->land_force, mm2(f.pump.block.bottom_area), f.pump.block.spring_force,
-             f.turn->press_force);
+             block_balance_text(*f.turn), f.turn->land_force, mm2(f.pump.block.bottom_area),
+             f.pump.block.spring_force, f.turn->press_force);
        }},
       {"block-overpressed",
        "block balance below 0.3 at more than 100 bar: the film would have to carry the rest",

@@ -33,7 +33,7 @@ struct OpenIndicator {
 /// is a state. Works and impulses are none.
 class OpenSystem {
  public:
-  /// @param shaft_from_outside  whether surround() gives the shaft's motion
+  /// @param shaft_from_outside  whether set_inputs() gives the shaft's motion
   OpenSystem(Mechanics& mechanics, Oil& oil, bool shaft_from_outside);
   ~OpenSystem();
 
@@ -44,7 +44,10 @@ class OpenSystem {
   void start(double time, const SystemState& state);
   /// From now on these act from outside; of the shaft its speed and acceleration: its angle is a
   /// state.
-  void surround(const Surroundings& outside);
+  void set_inputs(const Surroundings& outside);
+  [[deprecated("use set_inputs")]] void surround(const Surroundings& outside) {
+    set_inputs(outside);
+  }
 
   void set_time(double time);
   double time() const { return time_; }
@@ -61,7 +64,10 @@ class OpenSystem {
   /// Whether the block has left the interval between edges.
   bool beyond() const;
   /// The next time at which a law changes, s.
-  std::optional<double> next_knot() const;
+  std::optional<double> next_breakpoint() const;
+  [[deprecated("use next_breakpoint")]] std::optional<double> next_knot() const {
+    return next_breakpoint();
+  }
 
  private:
   AxisMotion block() const { return mechanics_.block(time_, state_.motion); }
@@ -72,7 +78,7 @@ class OpenSystem {
   std::vector<OpenState> states_;
   std::vector<OpenIndicator> indicators_;
   std::vector<std::size_t> active_;  // of the states of motion
-  std::vector<double> knots_;
+  std::vector<double> breakpoints_;
   std::vector<int> contacts_;
   std::unique_ptr<PortEdges> edges_;
   Surroundings outside_;

@@ -15,10 +15,11 @@ namespace bentaxis::coupled {
 /// What happened in a step.
 struct PassedEvent {
   enum class Kind {
-    edge,     ///< the block has passed an edge of a port
-    touch,    ///< a flank of the teeth, or a piston and its wall, has begun to touch
-    release,  ///< it has left the other
-    knot      ///< a law over time has changed
+    edge,        ///< the block has passed an edge of a port
+    touch,       ///< a flank of the teeth, or a piston and its wall, has begun to touch
+    release,     ///< it has left the other
+    breakpoint,  ///< a law over time has changed
+    knot [[deprecated("use breakpoint")]] = breakpoint
   };
   Kind kind = Kind::edge;
   double time = 0;   ///< s
@@ -46,7 +47,10 @@ class Stepper {
   void restart();
   /// From time() on these act from outside; nothing is done where they do so already.
   /// @throws InputError where the drive does not take them
-  void surround(const Surroundings& outside);
+  void set_inputs(const Surroundings& outside);
+  [[deprecated("use set_inputs")]] void surround(const Surroundings& outside) {
+    set_inputs(outside);
+  }
   const Surroundings& surroundings() const;
 
   /// @throws ComputationError naming the time where the motion cannot be followed; time() and

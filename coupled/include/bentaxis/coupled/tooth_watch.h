@@ -11,7 +11,7 @@ namespace bentaxis::coupled {
 
 /// Of an interval of time. Where pistons carry the block, contacts are those of pistons and walls,
 /// a side is the sign of theta - psi at the touch, and the force is the sum of all wall forces.
-struct ToothStretch {
+struct ContactInterval {
   double duration = 0;     ///< s
   double apart = 0;        ///< s without touch of a contact
   double plus = 0;         ///< s on the side that pushes the block towards +psi
@@ -23,8 +23,10 @@ struct ToothStretch {
   double largest_hit = 0;  ///< Ns, of impacts whose flanks left again in the interval; not of walls
 };
 
+using ToothStretch [[deprecated("use ContactInterval")]] = ContactInterval;
+
 /// Both intervals as one.
-ToothStretch operator+(const ToothStretch& a, const ToothStretch& b);
+ContactInterval operator+(const ContactInterval& a, const ContactInterval& b);
 
 /// Follows motion and oil as simulate() does, without rows. The largest force is that at the ends
 /// of steps and at the tops of the parabolas through three of them.
@@ -40,7 +42,7 @@ class ToothWatch {
   /// Begins at time 0 with shaft and block as `motion` says and the oil as it starts.
   void start(const MotionVector& motion);
   /// @throws ComputationError naming the time where the motion cannot be followed
-  ToothStretch run_to(double time);
+  ContactInterval run_to(double time);
   const MotionVector& motion() const;
   long steps() const;
 

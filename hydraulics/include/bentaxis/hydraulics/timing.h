@@ -7,19 +7,21 @@
 namespace bentaxis::hydraulics {
 
 /// Chamber angles, degrees: from in [0, 360), from < to; beyond 360 it goes on over 0.
-struct Stretch {
+struct AngleInterval {
   double from_deg = 0, to_deg = 0;
 };
+
+using Stretch [[deprecated("use AngleInterval")]] = AngleInterval;
 
 /// A chamber's turn as its ports time it (docs/hydraulics.md, "Timing"). SI, pressures gauge;
 /// volumes are of one chamber per turn, at the density in the suction port.
 struct Timing {
   /// Where its pressure is below that at which dissolved air comes out, and at which oil boils.
-  std::vector<Stretch> below_saturation, below_vapour;
+  std::vector<AngleInterval> below_saturation, below_vapour;
 
   /// Open to both ports at once.
   struct Connection {
-    Stretch where;
+    AngleInterval where;
     double largest_area = 0;  ///< m2, of both openings in series: 1/sqrt(1/as^2 + 1/ad^2)
     double largest_area_deg = 0;
     double through = 0;  ///< m3 that comes from the delivery port while as much leaves to suction
@@ -27,7 +29,7 @@ struct Timing {
   std::vector<Connection> connected;
 
   // From the delivery port into the chamber.
-  std::vector<Stretch> backflow_where;
+  std::vector<AngleInterval> backflow_where;
   double backflow = 0;          ///< m3, all of it, what goes on to the suction port included
   double largest_backflow = 0;  ///< m3/s
   double largest_backflow_deg = 0;
@@ -37,7 +39,7 @@ struct Timing {
 
   /// Closed to both ports.
   struct Trapped {
-    Stretch where;
+    AngleInterval where;
     double swept = 0;  ///< m3, maximum less minimum volume of the interval
     double greatest = 0, greatest_deg = 0;
     double least = 0, least_deg = 0;

@@ -334,13 +334,15 @@ struct Verdict {
 };
 
 /// Plausibility warnings of the case.
-struct DoubtRow {
+struct PlausibilityRow {
   std::string code, text;
   std::string reason;  ///< why they are meant, or ""
 };
+using DoubtRow [[deprecated("use PlausibilityRow")]] = PlausibilityRow;
+
 struct PlausibilitySection {
   std::string summary;  ///< the pump in one line
-  std::vector<DoubtRow> warnings, meant;
+  std::vector<PlausibilityRow> warnings, meant;
 };
 
 /// An input that both models share.

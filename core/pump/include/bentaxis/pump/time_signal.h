@@ -19,7 +19,8 @@ class TimeSignal {
   /// From 0 to `time`.
   double integral(double time) const;
   /// s, where higher derivatives jump.
-  const std::vector<double>& knots() const { return time_; }
+  const std::vector<double>& breakpoints() const { return time_; }
+  [[deprecated("use breakpoints")]] const std::vector<double>& knots() const { return time_; }
 
  private:
   std::size_t piece(double time) const;

@@ -41,7 +41,9 @@ class Mechanics {
   virtual MotionVector start() const = 0;
   /// From now on these act from outside; what is not given is as the case says. Nothing is, before.
   /// @throws std::logic_error of mechanics that take nothing
-  virtual void surround(const Surroundings& outside);
+  virtual void set_inputs(const Surroundings& outside);
+  /// The name of 1.0.0.
+  [[deprecated("use set_inputs")]] virtual void surround(const Surroundings& outside);
   /// What each state is measured by: an error of one part in this scale changes reactions by about
   /// the same part of their peak. > 0.
   virtual MotionVector scales() const = 0;
@@ -50,7 +52,9 @@ class Mechanics {
   virtual bool compliant() const = 0;
   virtual bool has_motor() const = 0;
   /// Times at which what drives the shaft changes its law, s.
-  virtual std::vector<double> knots() const = 0;
+  virtual std::vector<double> breakpoints() const;
+  /// The name of 1.0.0.
+  [[deprecated("use breakpoints")]] virtual std::vector<double> knots() const;
 
   /// Angles and speeds; accelerations are not filled in.
   virtual AxisMotion shaft(double time, const MotionVector& y) const = 0;

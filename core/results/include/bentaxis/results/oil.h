@@ -47,7 +47,9 @@ class Oil {
   virtual int states() const = 0;
   /// Which pressures and loads from outside it takes, and from now on those.
   virtual TakesFromOutside takes() const { return {}; }
-  virtual void surround(const Surroundings& /*outside*/) {}
+  virtual void set_inputs(const Surroundings& outside);
+  /// The name of 1.0.0.
+  [[deprecated("use set_inputs")]] virtual void surround(const Surroundings& outside);
   /// States at time 0, shaft and block at angle 0.
   virtual std::vector<double> start() const = 0;
   /// What the states are: names without blanks, and their meaning; those of no unit have none.
@@ -58,7 +60,9 @@ class Oil {
   /// Block angles in [0, 360), degrees, rising, at which the rates have a kink.
   virtual std::vector<double> edges_deg() const = 0;
   /// Times at which what the pump is connected to changes its law, s.
-  virtual std::vector<double> knots() const = 0;
+  virtual std::vector<double> breakpoints() const;
+  /// The name of 1.0.0.
+  [[deprecated("use breakpoints")]] virtual std::vector<double> knots() const;
   /// States after the block has turned by +360/N degrees and pistons are numbered again, so that
   /// piston k is where piston k was: next[i] = y[order[i]].
   virtual std::vector<int> order_after_period() const = 0;

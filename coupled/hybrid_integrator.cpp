@@ -1,4 +1,4 @@
-#include "course.h"
+#include "hybrid_integrator.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +39,7 @@ HybridIntegrator::HybridIntegrator(std::string name, Mechanics& mechanics, const
       system_(mechanics, oil, balances),
       integrator_(system_, tolerance),
       edges_(oil.edges_deg()),
-      knots_(knots_of(mechanics, oil)),
+      breakpoints_(breakpoints_of(mechanics, oil)),
       has_oil_(oil.states() > 0) {
   integrals_.assign(static_cast<std::size_t>(system_.integrals()), 0.0);
 }
@@ -243,8 +243,8 @@ bool HybridIntegrator::hides_touch(std::size_t contact) {
 // expected.
 double HybridIntegrator::horizon(double end) const {
   double stop = end;
-  const auto knot = std::upper_bound(knots_.begin(), knots_.end(), time_);
-  if (knot != knots_.end()) stop = std::min(stop, *knot);
+  const auto breakpoint = std::upper_bound(breakpoints_.begin(), breakpoints_.end(), time_);
+  if (breakpoint != breakpoints_.end()) stop = std::min(stop, *breakpoint);
   if (edges_.none()) return stop;
   const AxisMotion b = block(time_, state_);
   const double left = b.speed > 0 ? system_.to - b.angle : system_.from - b.angle;
@@ -282,7 +282,7 @@ void HybridIntegrator::advance(double end) {
   }
   keep_going();
   passed_edge_.reset();
-  at_knot_ = false;
+  at_breakpoint_ = false;
   before_.touching = touching_;
   before_.events = events_.size();
   before_.apart = apart_;
@@ -308,8 +308,8 @@ void HybridIntegrator::advance(double end) {
       return;
     }
   }
-  at_knot_ = std::binary_search(knots_.begin(), knots_.end(), time_);
-  if (at_knot_) restart_ = true;
+  at_breakpoint_ = std::binary_search(breakpoints_.begin(), breakpoints_.end(), time_);
+  if (at_breakpoint_) restart_ = true;
   if (!edges_.none()) {
     const double angle = block(time_, state_).angle;
     const std::vector<int>& passed = integrator_.passed();

@@ -1,5 +1,5 @@
-// Follows motion and oil through edges of the ports, knots of curves and touches of the teeth.
-// Internal.
+// Follows motion and oil through edges of the ports, breakpoints of curves and touches of the
+// teeth. Internal.
 #pragma once
 
 #include <cstddef>
@@ -44,9 +44,9 @@ class HybridIntegrator {
   void close_contacts();
   const std::vector<ToothEvent>& events() const { return events_; }
   /// Of the last step: the edge of a port that the block has passed at time(), rad, and whether a
-  /// law changes there (a knot of a curve).
+  /// law changes there (a breakpoint of a curve).
   std::optional<double> passed_edge() const { return passed_edge_; }
-  bool at_knot() const { return at_knot_; }
+  bool at_breakpoint() const { return at_breakpoint_; }
   /// They are not kept any longer, nor are steps counted until now: of a motion without an end.
   void forget_events();
   double time_apart() const { return apart_; }  ///< s, without touch of any contact
@@ -93,11 +93,11 @@ class HybridIntegrator {
   System system_;
   numerics::StiffIntegrator integrator_;
   PortEdges edges_;
-  std::vector<double> knots_;
+  std::vector<double> breakpoints_;
   bool has_oil_;
   bool restart_ = false;  // before the next step
   std::optional<double> passed_edge_;
-  bool at_knot_ = false;
+  bool at_breakpoint_ = false;
   double time_ = 0, step_start_ = 0, apart_ = 0;
   SystemState state_;  // at time_
   std::vector<double> y_, integrals_;
