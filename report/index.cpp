@@ -130,7 +130,7 @@ std::string wrong_counts(const std::vector<IndexEntry>& entries) {
 // How many rows of the table say what: each report has one verdict, and may have remarks.
 std::string counts_of(const std::vector<IndexEntry>& entries) {
   const auto counted = [&](const char* before, const char* words, const auto& is) {
-    const auto n = std::count_if(entries.begin(), entries.end(), is);
+    const auto n = std::ranges::count_if(entries, is);
     return n > 0 ? fmt::format("{}{} {}", before, n, words) : std::string();
   };
   std::string text = fmt::format("{} report{}", entries.size(), entries.size() == 1 ? "" : "s");
@@ -268,7 +268,7 @@ void sort_by_worst(std::vector<IndexEntry>& entries) {
     if (!e.not_valid.empty()) return 1;
     return !e.warnings.empty() ? 2 : e.agrees ? 3 : 4;
   };
-  std::stable_sort(entries.begin(), entries.end(), [&](const IndexEntry& a, const IndexEntry& b) {
+  std::ranges::stable_sort(entries, [&](const IndexEntry& a, const IndexEntry& b) {
     if (rank(a) != rank(b)) return rank(a) < rank(b);
     const auto size = [&](const IndexEntry& e) {
       return std::pair(rank(e) == 1 ? share_not_valid(e) : 0, e.worst_over_peak.value_or(-1));

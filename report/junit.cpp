@@ -12,7 +12,7 @@ namespace {
 // Without the control characters that XML 1.0 excludes.
 std::string text_of(const std::string& text) {
   std::string out;
-  std::copy_if(text.begin(), text.end(), std::back_inserter(out), [](char c) {
+  std::ranges::copy_if(text, std::back_inserter(out), [](char c) {
     return static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t';
   });
   return out;
@@ -28,8 +28,8 @@ void set_time(pugi::xml_node node, double seconds) {
 
 void set_counts(pugi::xml_node node, const std::vector<TestCase>& cases) {
   const auto count = [&](TestOutcome outcome) {
-    return std::to_string(std::count_if(
-        cases.begin(), cases.end(), [&](const TestCase& test) { return test.outcome == outcome; }));
+    return std::to_string(std::ranges::count_if(
+        cases, [&](const TestCase& test) { return test.outcome == outcome; }));
   };
   set(node, "tests", std::to_string(cases.size()));
   set(node, "failures", count(TestOutcome::failed));

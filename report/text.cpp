@@ -26,8 +26,7 @@ std::string text_table(const compare::Comparison& comparison) {
   }
   std::vector<const compare::ChannelComparison*> rows;
   for (const auto& [group, c] : worst) rows.push_back(c);
-  std::stable_sort(rows.begin(), rows.end(),
-                   [&](const auto* a, const auto* b) { return rank(a) > rank(b); });
+  std::ranges::stable_sort(rows, [&](const auto* a, const auto* b) { return rank(a) > rank(b); });
   std::string text = fmt::format("{:<16} {:>12} {:>4}  {:>12} {:>10} {:>7}  {}\n", "worst channel",
                                  "vector peak", "", "difference", "over peak", "digits", "verdict");
   for (const auto* c : rows) {

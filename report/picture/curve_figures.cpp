@@ -144,7 +144,7 @@ Picture picture_of(const ChannelFigure& figure, const Curves& page) {
     const std::string colour = pick(kColours, c);
     std::vector<const Values*> columns;
     for (const auto& table : curves.tables) columns.push_back(find(table.columns, channel));
-    const bool alone = std::count_if(columns.begin(), columns.end(), any) < 2;
+    const bool alone = std::ranges::count_if(columns, any) < 2;
     bool shown = false;
     for (std::size_t t = 0; t < columns.size(); ++t) {
       if (!any(columns[t])) continue;
@@ -190,8 +190,8 @@ Picture picture_of(const ChannelFigure& figure, const Curves& page) {
   picture.panels.push_back(curve_panel(axis, with_ends({"value", figure.unit}, figure.ends),
                                        three ? 135 : 185, std::move(lines), std::move(bands)));
   if (!curves.marks.empty()) add_marks(picture.panels.back(), curves.marks);
-  const bool exact = std::all_of(differences.begin(), differences.end(), [](const Curve& curve) {
-    return std::all_of(curve.y.begin(), curve.y.end(), [](double v) { return !(v < 0 || v > 0); });
+  const bool exact = std::ranges::all_of(differences, [](const Curve& curve) {
+    return std::ranges::all_of(curve.y, [](double v) { return !(v < 0 || v > 0); });
   });
   if (!exact) {
     picture.panels.push_back(
@@ -276,7 +276,7 @@ Picture picture_of(const XyFigure& figure, const Curves&) {
       draw_mark(root, 0, at[0], at[1], "#000000", point.label);
       // Where points crowd not every one has room for its name.
       const double width = kLetter * static_cast<double>(point.label.size()) + 14;
-      if (std::any_of(named.begin(), named.end(), [&](const Pixel& other) {
+      if (std::ranges::any_of(named, [&](const Pixel& other) {
             return std::abs(other[0] - at[0]) < width && std::abs(other[1] - at[1]) < 12;
           }))
         continue;

@@ -44,7 +44,7 @@ void draw_band(pugi::xml_node root, const Scale& x, const Scale& y, const Band& 
   std::string points;
   for (const auto& [a, b] : simplified(low)) points += fmt::format("{:.1f},{:.2f} ", a, b);
   auto upper = simplified(high);
-  std::reverse(upper.begin(), upper.end());
+  std::ranges::reverse(upper);
   for (const auto& [a, b] : upper) points += fmt::format("{:.1f},{:.2f} ", a, b);
   points.pop_back();
   add(root, "polygon",
@@ -67,7 +67,7 @@ struct Span {
 std::vector<std::vector<Pixel>> within(const std::vector<Pixel>& piece, const Span& xs,
                                        const Span& ys) {
   const auto inside = [&](const Pixel& p) { return xs.holds(p[0]) && ys.holds(p[1]); };
-  if (std::all_of(piece.begin(), piece.end(), inside)) return {piece};
+  if (std::ranges::all_of(piece, inside)) return {piece};
   std::vector<std::vector<Pixel>> parts;
   bool joined = false;
   for (std::size_t i = 0; i + 1 < piece.size(); ++i) {
@@ -199,12 +199,11 @@ void whole_turns(Panel& panel, const Values& theta) {
 }
 
 bool any_drawn(const std::vector<Curve>& curves) {
-  return std::any_of(curves.begin(), curves.end(), [](const Curve& curve) {
-    return std::any_of(curve.y.begin(), curve.y.end(), is_computed);
-  });
+  return std::ranges::any_of(
+      curves, [](const Curve& curve) { return std::ranges::any_of(curve.y, is_computed); });
 }
 bool any(const Values* values) {
-  return values != nullptr && std::any_of(values->begin(), values->end(), is_computed);
+  return values != nullptr && std::ranges::any_of(*values, is_computed);
 }
 
 }  // namespace bentaxis::report::picture

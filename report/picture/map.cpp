@@ -19,8 +19,7 @@ std::vector<std::array<Pixel, 2>> contour(const Values& xs, const Values& ys,
     for (std::size_t j = 0; j + 1 < xs.size(); ++j) {
       const std::array<std::array<std::size_t, 2>, 4> corners = {
           {{j, i}, {j + 1, i}, {j + 1, i + 1}, {j, i + 1}}};
-      if (std::any_of(corners.begin(), corners.end(),
-                      [&](const auto& c) { return !is_computed(z[c[1]][c[0]]); }))
+      if (std::ranges::any_of(corners, [&](const auto& c) { return !is_computed(z[c[1]][c[0]]); }))
         continue;
       std::vector<Pixel> cuts;
       for (std::size_t k = 0; k < 4; ++k) {
@@ -143,9 +142,8 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
     picture.legend[0][0].label = figure.z.label + ": " + picture.legend[0][0].label;
   }
   picture.legend.emplace_back();
-  if (std::any_of(figure.reasons.begin(), figure.reasons.end(), [](const auto& row) {
-        return std::any_of(row.begin(), row.end(),
-                           [](const auto& reason) { return !reason.empty(); });
+  if (std::ranges::any_of(figure.reasons, [](const auto& row) {
+        return std::ranges::any_of(row, [](const auto& reason) { return !reason.empty(); });
       }))
     picture.legend[1].push_back({"infeasible", [](pugi::xml_node root, double x, double y) {
                                    hatch(root, x, y - 6, 30, 12);
@@ -215,7 +213,7 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
            {"stroke-linecap", "round"}});
       const Pixel& at = pieces[pieces.size() / 2][0];
       // Where lines crowd not every one has room for its value.
-      const bool room = std::none_of(labelled.begin(), labelled.end(), [&](const Pixel& other) {
+      const bool room = std::ranges::none_of(labelled, [&](const Pixel& other) {
         return std::abs(other[0] - at[0]) < 60 && std::abs(other[1] - at[1]) < 14;
       });
       if (!room) continue;
@@ -233,7 +231,7 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
         const bool begins = k == 0 || !shown(k - 1);
         const double at_x = x.place(line.x[k]), at_y = y.place(line.y[k]);
         if (begins && !shown(k + 1)) {  // a place alone: across its row
-          const auto row = std::upper_bound(y_edges.begin(), y_edges.end(), line.y[k]);
+          const auto row = std::ranges::upper_bound(y_edges, line.y[k]);
           if (row == y_edges.begin() || row == y_edges.end()) continue;
           path += fmt::format("M{0} {1}L{0} {2}", px(at_x), px(in_frame(y, *(row - 1))),
                               px(in_frame(y, *row)));

@@ -48,8 +48,7 @@ Picture picture_of(const ParallelFigure& figure, const Curves&) {
       ranges[k] = {0, std::max(1.0, static_cast<double>(column.words.size()) - 1)};
     names.push_back(cut(name_of({column.label, column.unit}), 40));
   }
-  if (std::all_of(ranges.begin(), ranges.end(), [](const Range& r) { return r.empty(); }))
-    return picture;
+  if (std::ranges::all_of(ranges, [](const Range& r) { return r.empty(); })) return picture;
   const auto scale = [&columns = figure.columns, ranges](std::size_t k, double first, double last) {
     const auto& column = columns[k];
     Scale made =

@@ -48,9 +48,8 @@ Picture picture_of(const ScatterFigure& figure, const Curves&) {
                                      draw_mark(root, shown.style, x + 15, y, shown.colour, "");
                                  }});
   // What is emphasised lies broad and pale under the rest.
-  std::stable_sort(all.begin(), all.end(), [](const Shown& a, const Shown& b) {
-    return a.series.emphasis > b.series.emphasis;
-  });
+  std::ranges::stable_sort(
+      all, [](const Shown& a, const Shown& b) { return a.series.emphasis > b.series.emphasis; });
   panel.draw = [all, x_name = figure.x.label, y_name = figure.y.label](
                    pugi::xml_node root, const Scale& x, const Scale& y) {
     for (const Shown& shown : all) {
