@@ -119,23 +119,6 @@ Json list_of(const Items& items, One one) {
   return list;
 }
 
-// A member of an object where there is something to say: a value that is there, text that is not
-// empty, items, a yes.
-template <class Value>
-void put(Json& json, const char* key, const std::optional<Value>& value) {
-  if (value) json[key] = *value;
-}
-template <class Items>
-void put(Json& json, const char* key, const Items& items) requires requires {
-  items.empty();
-}
-{
-  if (!items.empty()) json[key] = items;
-}
-void put(Json& json, const char* key, bool flag) {
-  if (flag) json[key] = true;
-}
-
 }  // namespace
 
 // ---- Blocks
@@ -151,21 +134,14 @@ BENTAXIS_JSON(ScatterSeries, name, style, line, emphasis, points)
 BENTAXIS_JSON(DrawingFigure::Look, label, colour, filled)
 BENTAXIS_JSON(DrawingFigure::Arrow, panel, look, x, y, dx, dy)
 
-inline void to_json(Json& json, const Axis& axis) {
-  json = {{"label", axis.label}, {"unit", axis.unit}, {"log", axis.log}};
-  put(json, "from", axis.from);
-  put(json, "to", axis.to);
-}
+BENTAXIS_JSON_GIVEN(Axis, (from, to), label, unit, log)
+BENTAXIS_JSON_GIVEN(XySeries, (dashed), label, x, y)
+BENTAXIS_JSON_GIVEN(BarsFigure::Bar, (interval), label, low, high, note)
 
 inline void to_json(Json& json, const Ends& ends) { json = {ends.low, ends.high}; }
 
 inline void to_json(Json& json, const Series& s) {
   json = {{"label", s.label}, {"values", rounded(s.values)}};
-}
-
-inline void to_json(Json& json, const XySeries& s) {
-  json = {{"label", s.label}, {"x", s.x}, {"y", s.y}};
-  put(json, "dashed", s.dashed);
 }
 
 // Thousandths are more than a picture shows.
@@ -184,15 +160,15 @@ inline void to_json(Json& json, const DrawingFigure::Line& line) {
 
 BENTAXIS_JSON(DrawingFigure::Frame, theta_deg, text, lines, arrows)
 
-inline void to_json(Json& json, const DrawingFigure::Panel& panel) {
-  json = {{"x", panel.x}, {"y", panel.y}};
-  json["x_range"] = {panel.x_low, panel.x_high};
-  json["y_range"] = {panel.y_low, panel.y_high};
+inline void to_json(Json& json, const DrawingFigure::Shades& shades) {
+  json = {{"label", shades.label}, {"unit", shades.unit}, {"range", {shades.low, shades.high}}};
 }
 
-inline void to_json(Json& json, const BarsFigure::Bar& bar) {
-  json = {{"label", bar.label}, {"low", bar.low}, {"high", bar.high}, {"note", bar.note}};
-  put(json, "interval", bar.interval);
+inline void to_json(Json& json, const DrawingFigure::Panel& panel) {
+  json = {{"x", panel.x},
+          {"y", panel.y},
+          {"x_range", {panel.x_low, panel.x_high}},
+          {"y_range", {panel.y_low, panel.y_high}}};
 }
 
 inline void to_json(Json& json, const BandFigure::Band& band) {
@@ -213,117 +189,61 @@ inline void to_json(Json& json, const ParallelFigure::Column& column) {
 BENTAXIS_JSON(Curves::Mark, x, upper)
 inline void to_json(Json& json, const Curves& curves);
 
-namespace {
+// ---- What the kinds of figures differ in
 
-Json with_values(const Axis& axis, const Values& values) {
+inline Json with_values(const Axis& axis, const Values& values) {
   Json json = axis;
   json["values"] = values;
   return json;
 }
 
-// What the kinds of figures differ in.
+BENTAXIS_JSON_GIVEN(ChannelFigure, (curves, ends), unit, channels, extra)
+BENTAXIS_JSON(PistonBars, unit, channels, angles)
+BENTAXIS_JSON(OwnFigure::Right, value, unit, series)
+BENTAXIS_JSON(XyFigure, x, y, series, equal, points)
+BENTAXIS_JSON(ScatterFigure, x, y, series)
+BENTAXIS_JSON_GIVEN(DrawingFigure, (shades, ground, axis), looks, panels, frames, shown)
+BENTAXIS_JSON(BarsFigure, x, bars)
+BENTAXIS_JSON(ParallelFigure, columns, colour_by, marked, marked_label)
 
-Json json_of(const ChannelFigure& figure) {
-  Json json = {{"kind", "curves"},
-               {"unit", figure.unit},
-               {"channels", figure.channels},
-               {"extra", figure.extra}};
-  put(json, "curves", figure.curves);
-  put(json, "ends", figure.ends);
-  return json;
-}
-
-Json json_of(const PistonBars& figure) {
-  return {{"kind", "piston_bars"},
-          {"unit", figure.unit},
-          {"channels", figure.channels},
-          {"angles", figure.angles}};
-}
-
-Json json_of(const OwnFigure& figure) {
-  Json json = {
-      {"kind", "own_axis"},
-      {"unit", figure.unit},
-      {"value", figure.value},
-      {"x", {{"label", figure.axis}, {"angle", figure.angle}, {"values", rounded(figure.x)}}},
-      {"series", figure.series}};
+inline void to_json(Json& json, const OwnFigure& figure) {
+  json = {{"unit", figure.unit},
+          {"value", figure.value},
+          {"x", {{"label", figure.axis}, {"angle", figure.angle}, {"values", rounded(figure.x)}}},
+          {"series", figure.series}};
   put(json, "stack", figure.stack);
-  if (figure.right)
-    json["right"] = {{"value", figure.right->value},
-                     {"unit", figure.right->unit},
-                     {"series", figure.right->series}};
+  put(json, "right", figure.right);
   put(json, "ends", figure.ends);
-  return json;
 }
 
-Json json_of(const XyFigure& figure) {
-  return {{"kind", "xy"},          {"x", figure.x},
-          {"y", figure.y},         {"series", figure.series},
-          {"equal", figure.equal}, {"points", figure.points}};
-}
-
-Json json_of(const MapFigure& figure) {
-  Json json = {{"kind", "map"},
-               {"x", with_values(figure.x, figure.x_values)},
-               {"y", with_values(figure.y, figure.y_values)},
-               {"z", {{"label", figure.z.label}, {"unit", figure.z.unit}}},
-               {"values", figure.values},
-               {"contours", figure.contours},
-               {"points", figure.points}};
+inline void to_json(Json& json, const MapFigure& figure) {
+  json = {{"x", with_values(figure.x, figure.x_values)},
+          {"y", with_values(figure.y, figure.y_values)},
+          {"z", {{"label", figure.z.label}, {"unit", figure.z.unit}}},
+          {"values", figure.values},
+          {"contours", figure.contours},
+          {"points", figure.points}};
   put(json, "classes", figure.classes);
   put(json, "linear", figure.linear);
   put(json, "lines", figure.lines);
   put(json, "marks", figure.marks);
   put(json["z"], "from", figure.z.from);
   put(json, "reasons", figure.reasons);
-  return json;
 }
 
-Json json_of(const ScatterFigure& figure) {
-  return {{"kind", "scatter"}, {"x", figure.x}, {"y", figure.y}, {"series", figure.series}};
-}
-
-Json json_of(const DrawingFigure& figure) {
-  Json json = {{"kind", "drawing"},
-               {"looks", figure.looks},
-               {"panels", figure.panels},
-               {"frames", figure.frames},
-               {"shown", figure.shown}};
-  if (figure.shades)
-    json["shades"] = {{"label", figure.shades->label},
-                      {"unit", figure.shades->unit},
-                      {"range", {figure.shades->low, figure.shades->high}}};
-  put(json, "ground", figure.ground);
-  put(json, "axis", figure.axis);
-  return json;
-}
-
-Json json_of(const BarsFigure& figure) {
-  return {{"kind", "bars"}, {"x", figure.x}, {"bars", figure.bars}};
-}
-
-Json json_of(const BandFigure& figure) {
-  Json json = {{"kind", "bands"},
-               {"x", with_values(figure.x, figure.x_values)},
-               {"y", figure.y},
-               {"bands", figure.bands},
-               {"lines", figure.lines}};
+inline void to_json(Json& json, const BandFigure& figure) {
+  json = {{"x", with_values(figure.x, figure.x_values)},
+          {"y", figure.y},
+          {"bands", figure.bands},
+          {"lines", figure.lines}};
   json["x"]["angle"] = figure.angle;
-  return json;
 }
-
-Json json_of(const ParallelFigure& figure) {
-  return {{"kind", "parallel"},
-          {"columns", figure.columns},
-          {"colour_by", figure.colour_by},
-          {"marked", figure.marked},
-          {"marked_label", figure.marked_label}};
-}
-
-}  // namespace
 
 inline void to_json(Json& json, const Figure& figure) {
-  json = std::visit([](const auto& content) { return json_of(content); }, figure.content);
+  constexpr const char* kKinds[] = {"curves",  "piston_bars", "own_axis", "xy",    "map",
+                                    "scatter", "drawing",     "bars",     "bands", "parallel"};
+  json = std::visit([](const auto& content) { return Json(content); }, figure.content);
+  json["kind"] = kKinds[figure.content.index()];
   json["id"] = figure.id;
   json["file"] = file_name_of(figure);
   json["title"] = figure.title;
@@ -351,45 +271,43 @@ BENTAXIS_JSON(HardCaseRow::Model, model, expected, verdict, message, digits, gro
               measured_over_predicted, microseconds_per_angle)
 BENTAXIS_JSON(HardCaseRow, name, group, hard, changes, models)
 
-inline void to_json(Json& json, const Verdict& verdict) {
-  json = {{"agrees", verdict.agrees}, {"headline", verdict.headline}};
-  put(json, "answers", verdict.answers);
-  put(json, "word", verdict.word);
-  put(json, "not_valid", verdict.not_valid);
-  put(json, "tolerance", verdict.tolerance);
-  if (verdict.compared) {
-    json["compared"] = *verdict.compared;
-    json["digits"] = verdict.digits;
-    json["worst"] = nullptr;
-  }
-  put(json, "checks_hold", verdict.checks_hold);
-  if (verdict.worst)
-    json["worst"] = {{"channel", verdict.worst->channel},
-                     {"max_over_peak", verdict.worst->over_peak},
-                     {"theta_deg", verdict.worst->theta_deg}};
-  put(json, "rest_over_peak", verdict.rest_over_peak);
-  put(json, "rest_tolerance", verdict.rest_tolerance);
-  put(json, "reference", verdict.reference);
-  put(json, "fit", verdict.fit);
-  put(json, "models_agree", verdict.models_agree);
-  if (verdict.cause)
-    json["cause"] = {{"text", verdict.cause->text},
-                     {"round_off_over_peak", verdict.cause->round_off_over_peak},
-                     {"max_over_peak", verdict.cause->over_peak}};
+inline void to_json(Json& json, const WorstChannel& worst) {
+  json = {{"channel", worst.channel},
+          {"max_over_peak", worst.over_peak},
+          {"theta_deg", worst.theta_deg}};
+}
+
+inline void to_json(Json& json, const Verdict::Cause& cause) {
+  json = {{"text", cause.text},
+          {"round_off_over_peak", cause.round_off_over_peak},
+          {"max_over_peak", cause.over_peak}};
+}
+
+// Of what was compared the digits and the worst channel are there in any case.
+inline void to_json(Json& json, const Verdict& v) {
+  json = {{"agrees", v.agrees}, {"headline", v.headline}};
+  if (v.compared)
+    json.update({{"compared", *v.compared}, {"digits", v.digits}, {"worst", nullptr}});
+  put(json, "worst", v.worst);
+  put(json, "answers", v.answers);
+  put(json, "word", v.word);
+  put(json, "not_valid", v.not_valid);
+  put(json, "tolerance", v.tolerance);
+  put(json, "checks_hold", v.checks_hold);
+  put(json, "rest_over_peak", v.rest_over_peak);
+  put(json, "rest_tolerance", v.rest_tolerance);
+  put(json, "reference", v.reference);
+  put(json, "fit", v.fit);
+  put(json, "models_agree", v.models_agree);
+  put(json, "cause", v.cause);
 }
 
 inline void to_json(Json& json, const PlausibilitySection& section) {
-  const auto warning = [](const PlausibilityRow& row) {
-    return Json{{"code", row.code}, {"text", row.text}};
-  };
-  const auto meant = [&](const PlausibilityRow& row) {
-    Json entry = warning(row);
-    entry["reason"] = row.reason;
-    return entry;
-  };
-  json = {{"summary", section.summary},
-          {"warnings", list_of(section.warnings, warning)},
-          {"meant", list_of(section.meant, meant)}};
+  json = {{"summary", section.summary}, {"warnings", Json::array()}, {"meant", Json::array()}};
+  for (const PlausibilityRow& row : section.warnings)
+    json["warnings"].push_back({{"code", row.code}, {"text", row.text}});
+  for (const PlausibilityRow& row : section.meant)
+    json["meant"].push_back({{"code", row.code}, {"text", row.text}, {"reason", row.reason}});
 }
 
 inline void to_json(Json& json, const ValidityRow& row) {
@@ -449,78 +367,103 @@ inline void to_json(Json& json, const LongRunSection& run) {
   json["bounded"] = run.bounded;
 }
 
-namespace {
+}  // namespace bentaxis::report
 
-Json json_of(const std::optional<compare::PublishedValue>& value) {
+namespace bentaxis::compare {
+
+inline nlohmann::json json_of(const std::optional<PublishedValue>& value) {
   if (!value) return nullptr;
   if (value->low == value->high) return rounded(value->low, 6);
-  return compare::text_of(*value);
+  return text_of(*value);
 }
 
-Json json_of(const PublishedTable& published) {
-  const compare::PublishedSection& section = published.section;
-  const auto row_of = [&](const compare::PublishedRow& row) {
-    Json json = {{"quantity", row.number.quantity},
-                 {"paper", row.printed},
-                 {"unit", row.number.unit},
-                 {"status", row.number.status},
-                 {"at", row.at},
-                 {"condition", row.number.condition},
-                 {"variant", row.number.variant},
-                 {"counted", row.counted()},
-                 {"verdict", compare::to_string(row.verdict)},
-                 {"where", row.where}};
-    for (std::size_t m = 0; m < section.models.size(); ++m)
-      json[section.models[m]] = json_of(row.values[m]);
-    return json;
-  };
-  return {{"text", published.text},
-          {"rows", list_of(section.rows, row_of)},
+inline void to_json(nlohmann::json& json, const PublishedTable& published) {
+  const PublishedSection& section = published.section;
+  json = {{"text", published.text},
+          {"rows", nlohmann::json::array()},
           {"predicted", section.summary.predicted},
           {"predicted_comparable", section.summary.predicted_comparable},
           {"predicted_inside", section.summary.predicted_inside}};
+  for (const PublishedRow& row : section.rows) {
+    nlohmann::json& entry = json["rows"].emplace_back();
+    entry = {{"quantity", row.number.quantity},
+             {"paper", row.printed},
+             {"unit", row.number.unit},
+             {"status", row.number.status},
+             {"at", row.at},
+             {"condition", row.number.condition},
+             {"variant", row.number.variant},
+             {"counted", row.counted()},
+             {"verdict", to_string(row.verdict)},
+             {"where", row.where}};
+    for (std::size_t m = 0; m < section.models.size(); ++m)
+      entry[section.models[m]] = json_of(row.values[m]);
+  }
 }
 
-// One row of `tradeoff`: an object whose keys are the row's own.
-Json json_of(const Record& record) {
-  Json row = Json::object();
-  for (const auto& [key, cell] : record) row[key] = cell;
-  return row;
+}  // namespace bentaxis::compare
+
+namespace bentaxis::report {
+namespace {
+
+// ---- The parts of a report
+
+// Puts a part into the report's JSON where it is there.
+template <auto part>
+void put_part(Json& json, const char* key, const Document& document) {
+  put(json, key, document.*part);
 }
 
-// The parts of a report that are there.
+// A comparison says so where there is nothing to take apart and nothing printed to hold it to.
+void put_comparison(Json& json, const char* key, const Document& document) {
+  if (!document.comparison) return;
+  json[key] = document.comparison->channels;
+  for (const char* other : {"assumptions", "published"})
+    if (!json.contains(other)) json[other] = nullptr;
+}
+
+// Objects whose keys are the row's own.
+void put_records(Json& json, const char* key, const Document& document) {
+  if (!document.records) return;
+  json[key] = list_of(*document.records, [](const Record& record) {
+    Json row = Json::object();
+    for (const auto& [name, cell] : record) row[name] = cell;
+    return row;
+  });
+}
+
+// Every part with its key; docs/report.schema.json has each, and docs/report_json.md its meaning.
+constexpr struct {
+  const char* key;
+  void (*put)(Json& json, const char* key, const Document& document);
+} kParts[] = {{"files", put_part<&Document::files>},
+              {"provenance", put_part<&Document::provenance>},
+              {"case", put_part<&Document::the_case>},
+              {"plausibility", put_part<&Document::plausibility>},
+              {"derived", put_part<&Document::derived>},
+              {"verdict", put_part<&Document::verdict>},
+              {"meaning", put_part<&Document::meaning>},
+              {"key_figures", put_part<&Document::key_figures>},
+              {"summary", put_part<&Document::summary>},
+              {"warnings", put_part<&Document::warnings>},
+              {"common", put_part<&Document::common>},
+              {"validity", put_part<&Document::validity>},
+              {"timing", put_part<&Document::timing>},
+              {"models", put_part<&Document::models>},
+              {"checks", put_part<&Document::checks>},
+              {"budget", put_part<&Document::budget>},
+              {"assumptions", put_part<&Document::assumptions>},
+              {"published", put_part<&Document::published>},
+              {"channels", put_comparison},
+              {"runs", put_part<&Document::runs>},
+              {"figures", put_part<&Document::figures>},
+              {"rows", put_records},
+              {"cases", put_part<&Document::hard_cases>},
+              {"long_run", put_part<&Document::long_run>}};
+
 Json json_of(const Document& document) {
   Json json = {{"schema", 1}, {"title", document.title}, {"program", document.program}};
-  put(json, "files", document.files);
-  put(json, "provenance", document.provenance);
-  put(json, "case", document.the_case);
-  put(json, "plausibility", document.plausibility);
-  put(json, "derived", document.derived);
-  put(json, "verdict", document.verdict);
-  put(json, "meaning", document.meaning);
-  put(json, "key_figures", document.key_figures);
-  put(json, "summary", document.summary);
-  put(json, "warnings", document.warnings);
-  put(json, "common", document.common);
-  put(json, "validity", document.validity);
-  put(json, "timing", document.timing);
-  put(json, "models", document.models);
-  if (document.comparison) {
-    json["channels"] = document.comparison->channels;
-    // A comparison says so where there is nothing to take apart and nothing printed to hold it to.
-    json["assumptions"] = nullptr;
-    json["published"] = nullptr;
-  }
-  put(json, "checks", document.checks);
-  put(json, "budget", document.budget);
-  put(json, "assumptions", document.assumptions);
-  if (document.published) json["published"] = json_of(*document.published);
-  put(json, "runs", document.runs);
-  put(json, "figures", document.figures);
-  if (document.records)
-    json["rows"] = list_of(*document.records, [](const Record& record) { return json_of(record); });
-  put(json, "cases", document.hard_cases);
-  put(json, "long_run", document.long_run);
+  for (const auto& part : kParts) part.put(json, part.key, document);
   return json;
 }
 
@@ -620,19 +563,8 @@ std::string dumped(Json json, int indent) {
 
 }  // namespace
 
-FigureContent::FigureContent() = default;
-FigureContent::~FigureContent() = default;
-FigureContent::FigureContent(const FigureContent&) = default;
-FigureContent::FigureContent(FigureContent&&) noexcept = default;
-FigureContent& FigureContent::operator=(const FigureContent&) = default;
-FigureContent& FigureContent::operator=(FigureContent&&) noexcept = default;
-
-Document::Document() = default;
-Document::~Document() = default;
-Document::Document(const Document&) = default;
-Document::Document(Document&&) noexcept = default;
-Document& Document::operator=(const Document&) = default;
-Document& Document::operator=(Document&&) noexcept = default;
+BENTAXIS_COMPILED_HERE(FigureContent)
+BENTAXIS_COMPILED_HERE(Document)
 
 ModelSection model_of(const ResultTable& table, const Lines& assumptions) {
   return {table.name, assumptions, table.provenance.facts, table.provenance.seconds, table.rows()};

@@ -45,7 +45,7 @@ inline void to_json(Json& json, const Vector& vector) {
 
 inline void to_json(Json& json, const Place& place) {
   json = {{"at", place.at}};
-  if (!place.body.empty()) json["body"] = place.body;
+  put(json, "body", place.body);
 }
 
 BENTAXIS_JSON(SceneSum, body, force_over_sum, moment_over_sum)
@@ -102,7 +102,7 @@ void put_form(Json& json, const Mesh& mesh) {
 }
 void put_form(Json& json, const Wire& wire) {
   json["wire"] = {{"points", flat(wire.points)}};
-  if (wire.closed) json["wire"]["closed"] = true;
+  put(json["wire"], "closed", wire.closed);
 }
 
 void put_motion(Json&, const Standing&) {}
@@ -116,8 +116,8 @@ void put_motion(Json& json, const Between& between) {
 
 inline void to_json(Json& json, const Shape& shape) {
   json = {{"look", shape.look}};
-  if (shape.see_through) json["see_through"] = true;
-  if (shape.tint) json["tint"] = *shape.tint;
+  put(json, "see_through", shape.see_through);
+  put(json, "tint", shape.tint);
   std::visit([&](const auto& form) { put_form(json, form); }, shape.form);
 }
 
@@ -131,19 +131,14 @@ inline void to_json(Json& json, const SceneLoad& load) {
   json = {{"id", load.id},       {"label", load.label},     {"group", load.group},
           {"kind", load.kind},   {"on", load.on},           {"by", load.by},
           {"point", load.point}, {"at", per_model(load.at)}};
-  if (!load.frame.empty()) json["frame"] = load.frame;
-  if (!load.axes.empty()) json["axes"] = load.axes;
+  put(json, "frame", load.frame);
+  put(json, "axes", load.axes);
   if (!load.force.empty()) json["force"] = per_model(load.force);
   if (!load.moment.empty()) json["moment"] = per_model(load.moment);
-  if (load.counterpart) json["counterpart"] = true;
+  put(json, "counterpart", load.counterpart);
 }
 
-Scene::Scene() = default;
-Scene::~Scene() = default;
-Scene::Scene(const Scene&) = default;
-Scene::Scene(Scene&&) noexcept = default;
-Scene& Scene::operator=(const Scene&) = default;
-Scene& Scene::operator=(Scene&&) noexcept = default;
+BENTAXIS_COMPILED_HERE(Scene)
 
 std::string compact_json(const Scene& scene) {
   Json json = {{"models", scene.models},  {"rows", scene.rows},     {"series", Json::array()},
@@ -153,8 +148,8 @@ std::string compact_json(const Scene& scene) {
   for (const Values& series : scene.series) json["series"].push_back(base64_floats(series));
   for (const auto& [name, axes] : scene.frames)
     json["frames"].push_back({{"name", name}, {"axes", axes}});
-  if (scene.film_point) json["film_point"] = *scene.film_point;
-  if (!scene.film_path.empty()) json["film_path"] = scene.film_path;
+  put(json, "film_point", scene.film_point);
+  put(json, "film_path", scene.film_path);
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   // The curves in the format of their own block, behind the rest.
   if (scene.curves)

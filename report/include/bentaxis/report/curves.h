@@ -7,6 +7,23 @@
 #include <utility>
 #include <vector>
 
+// Copies of types with very many members take the compiler seconds in every source that handles
+// them: the first declares them in a type, the second compiles them, in one source.
+#define BENTAXIS_COMPILED_ONCE(Type)  \
+  Type();                             \
+  ~Type();                            \
+  Type(const Type& other);            \
+  Type(Type&& other) noexcept;        \
+  Type& operator=(const Type& other); \
+  Type& operator=(Type&& other) noexcept
+#define BENTAXIS_COMPILED_HERE(Type)            \
+  Type::Type() = default;                       \
+  Type::~Type() = default;                      \
+  Type::Type(const Type&) = default;            \
+  Type::Type(Type&&) noexcept = default;        \
+  Type& Type::operator=(const Type&) = default; \
+  Type& Type::operator=(Type&&) noexcept = default;
+
 namespace bentaxis::report {
 
 /// Values of a curve; what was not computed (pump/number.h) becomes null.

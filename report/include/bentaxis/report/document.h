@@ -105,6 +105,11 @@ struct XySeries {
   std::string label;
   Values x, y;
   bool dashed = false;
+  void add(double at_x, double at_y) {
+    x.push_back(at_x);
+    y.push_back(at_y);
+  }
+  void close() { add(x.front(), y.front()); }  ///< ends where it begins
 };
 
 /// A place in a plane, by name.
@@ -170,6 +175,10 @@ struct DrawingFigure {
     double width = 1;  ///< of the line, px
     Values x, y;
     std::optional<double> value = std::nullopt;  ///< shades its inside, as `shades` says
+    void add(double at_x, double at_y) {
+      x.push_back(at_x);
+      y.push_back(at_y);
+    }
   };
   struct Arrow {
     int panel = 0, look = 0;
@@ -239,18 +248,11 @@ struct ParallelFigure {
   std::string marked_label = {};         ///< what these are: "Pareto front"
 };
 
-// Compiled once: in every source that handles figures the copies of all their kinds take the
-// compiler seconds. So with Scene and Document.
 struct FigureContent
     : std::variant<ChannelFigure, PistonBars, OwnFigure, XyFigure, MapFigure, ScatterFigure,
                    DrawingFigure, BarsFigure, BandFigure, ParallelFigure> {
   using variant::variant;
-  FigureContent();
-  ~FigureContent();
-  FigureContent(const FigureContent& other);
-  FigureContent(FigureContent&& other) noexcept;
-  FigureContent& operator=(const FigureContent& other);
-  FigureContent& operator=(FigureContent&& other) noexcept;
+  BENTAXIS_COMPILED_ONCE(FigureContent);
 };
 
 struct Figure {
@@ -452,42 +454,36 @@ struct LongRunSection {
 /// A report. A part that is absent is left out of the JSON and of the page; a list that is there
 /// may be empty.
 struct Document {
-  Document();
-  ~Document();
-  Document(const Document& other);
-  Document(Document&& other) noexcept;
-  Document& operator=(const Document& other);
-  Document& operator=(Document&& other) noexcept;
+  BENTAXIS_COMPILED_ONCE(Document);
 
   std::string title;
   Lines program;  ///< versions
-  std::optional<Provenance> provenance = std::nullopt;
-  std::vector<std::string> files =
-      {};  ///< written together with the report, it too; none: it stands alone
-  std::optional<CaseSection> the_case = std::nullopt;
-  std::optional<PlausibilitySection> plausibility = std::nullopt;
-  std::string picture = {};  ///< SVG at the head of the page, or ""; not in the JSON
-  std::optional<Scene> scene = std::nullopt;  ///< the pump in space; not in the JSON
-  std::optional<std::vector<DerivedQuantity>> derived = std::nullopt;
-  std::optional<Verdict> verdict = std::nullopt;
-  std::string meaning = {};  ///< what the verdict says and what not, or ""
-  std::optional<KeyFigures> key_figures = std::nullopt;
-  std::optional<Summary> summary = std::nullopt;
-  std::optional<std::vector<Warning>> warnings = std::nullopt;
-  std::optional<std::vector<CommonInput>> common = std::nullopt;
-  std::optional<std::vector<ValidityRow>> validity = std::nullopt;
-  std::optional<std::vector<TimingRow>> timing = std::nullopt;
-  std::optional<std::vector<ModelSection>> models = std::nullopt;
-  std::optional<compare::Comparison> comparison = std::nullopt;  ///< "channels"
-  std::optional<std::vector<compare::Check>> checks = std::nullopt;
-  std::optional<Budget> budget = std::nullopt;
-  std::optional<AssumptionSplit> assumptions = std::nullopt;
-  std::optional<PublishedTable> published = std::nullopt;
-  std::optional<std::vector<Section>> runs = std::nullopt;
-  std::optional<std::vector<Figure>> figures = std::nullopt;
-  std::optional<std::vector<Record>> records = std::nullopt;          ///< "rows"
-  std::optional<std::vector<HardCaseRow>> hard_cases = std::nullopt;  ///< "cases"
-  std::optional<LongRunSection> long_run = std::nullopt;
+  std::optional<Provenance> provenance;
+  std::vector<std::string> files;  ///< written together with it, it too; none: it stands alone
+  std::optional<CaseSection> the_case;
+  std::optional<PlausibilitySection> plausibility;
+  std::string picture;         ///< SVG at the head of the page, or ""; not in the JSON
+  std::optional<Scene> scene;  ///< the pump in space; not in the JSON
+  std::optional<std::vector<DerivedQuantity>> derived;
+  std::optional<Verdict> verdict;
+  std::string meaning;  ///< what the verdict says and what not, or ""
+  std::optional<KeyFigures> key_figures;
+  std::optional<Summary> summary;
+  std::optional<std::vector<Warning>> warnings;
+  std::optional<std::vector<CommonInput>> common;
+  std::optional<std::vector<ValidityRow>> validity;
+  std::optional<std::vector<TimingRow>> timing;
+  std::optional<std::vector<ModelSection>> models;
+  std::optional<compare::Comparison> comparison;  ///< "channels"
+  std::optional<std::vector<compare::Check>> checks;
+  std::optional<Budget> budget;
+  std::optional<AssumptionSplit> assumptions;
+  std::optional<PublishedTable> published;
+  std::optional<std::vector<Section>> runs;
+  std::optional<std::vector<Figure>> figures;
+  std::optional<std::vector<Record>> records;          ///< "rows"
+  std::optional<std::vector<HardCaseRow>> hard_cases;  ///< "cases"
+  std::optional<LongRunSection> long_run;
 };
 
 /// The report as docs/report.schema.json describes it, as the text of a file: JSON. Text that is no

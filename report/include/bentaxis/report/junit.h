@@ -12,8 +12,8 @@ struct TestCase {
   std::string name, class_name;
   double seconds = 0;
   TestOutcome outcome = TestOutcome::passed;
-  std::string message;  ///< one line: why it did not pass
-  std::string details;  ///< any number of lines; of a passed test its figures
+  std::string message = {};  ///< one line: why it did not pass
+  std::string details = {};  ///< any number of lines; of a passed test its figures
 };
 
 struct TestSuite {

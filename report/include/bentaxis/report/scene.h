@@ -124,12 +124,7 @@ struct SceneSum {
 };
 
 struct Scene {
-  Scene();
-  ~Scene();
-  Scene(const Scene& other);
-  Scene(Scene&& other) noexcept;
-  Scene& operator=(const Scene& other);
-  Scene& operator=(Scene&& other) noexcept;
+  BENTAXIS_COMPILED_ONCE(Scene);
 
   std::vector<std::string> models;              ///< names of the curves' tables
   std::size_t rows = 0;                         ///< of the curves and of every series
