@@ -95,57 +95,46 @@ report::KeyFigures key_figures_of(const ComparisonResult& r, const report::Docum
 }
 
 report::Section integration_section(const ComparisonResult& r) {
-  report::Section section;
-  section.title = "Integrated run and torque-driven run";
-  section.text = fmt::format(
-      "Integrator {}, {} revolution(s). Errors are the largest difference from the analytic model "
-      "over the peak. In the torque-driven run the shaft is free and driven by the analytic Td; "
-      "its speed error is relative to omega. Facts are of the last accuracy.",
-      name_of(r.options.integration.integrator), r.second.the_case.operation.revolutions);
-  section.table.columns = {"accuracy asked",
-                           "error Rs",
-                           "error Rc",
-                           "error Rb",
-                           "error Rcs",
-                           "error Td",
-                           "constraint error, m",
-                           "constraint rate error, m/s",
-                           "gear phase, deg",
-                           "work lost, J",
-                           "torque-driven speed error",
-                           "steps",
-                           "evaluations"};
-  for (const IntegrationRow& row : r.integrations)
-    section.table.rows.push_back({row.accuracy, row.rs, row.rc, row.bearings, row.rcs, row.td,
-                                  row.record.whole.position_error, row.record.whole.velocity_error,
-                                  row.record.whole.gear_phase / kRadPerDegree,
-                                  row.record.whole.work_residual, row.torque_driven_speed_error,
-                                  row.record.steps, row.record.evaluations});
+  report::NewSection section(
+      "Integrated run and torque-driven run",
+      fmt::format("Integrator {}, {} revolution(s). Errors are the largest difference from the "
+                  "analytic model over the peak. In the torque-driven run the shaft is free and "
+                  "driven by the analytic Td; its speed error is relative to omega. Facts are of "
+                  "the last accuracy.",
+                  name_of(r.options.integration.integrator),
+                  r.second.the_case.operation.revolutions));
+  section.columns("accuracy asked", "error Rs", "error Rc", "error Rb", "error Rcs", "error Td",
+                  "constraint error, m", "constraint rate error, m/s", "gear phase, deg",
+                  "work lost, J", "torque-driven speed error", "steps", "evaluations");
+  for (const IntegrationRow& row : r.integrations) {
+    const multibody::WorstErrors& whole = row.record.whole;
+    section.row(row.accuracy, row.rs, row.rc, row.bearings, row.rcs, row.td, whole.position_error,
+                whole.velocity_error, whole.gear_phase / kRadPerDegree, whole.work_residual,
+                row.torque_driven_speed_error, row.record.steps, row.record.evaluations);
+  }
   const multibody::IntegrationRecord& last = r.integrations.back().record;
-  section.facts = {{"gear phase, worst (block minus shaft)",
-                    fmt::format("{:.2e} deg", last.whole.gear_phase / kRadPerDegree)},
-                   {"shaft angle against omega t, worst",
-                    fmt::format("{:.2e} deg", last.whole.shaft_angle / kRadPerDegree)},
-                   {"work of loads", fmt::format("{:.6g} J", last.work_of_loads)},
-                   {"work of the drive", fmt::format("{:.6g} J", last.work_of_drives)},
-                   {"kinetic energy gained", fmt::format("{:.3g} J", last.kinetic_energy_gained)},
-                   {"work unaccounted for", fmt::format("{:.3g} J", last.whole.work_residual)}};
-  if (!r.choice.empty()) section.facts.emplace_back("chosen", r.choice);
+  section.fact("gear phase, worst (block minus shaft)", "{:.2e} deg",
+               last.whole.gear_phase / kRadPerDegree);
+  section.fact("shaft angle against omega t, worst", "{:.2e} deg",
+               last.whole.shaft_angle / kRadPerDegree);
+  section.fact("work of loads", "{:.6g} J", last.work_of_loads);
+  section.fact("work of the drive", "{:.6g} J", last.work_of_drives);
+  section.fact("kinetic energy gained", "{:.3g} J", last.kinetic_energy_gained);
+  section.fact("work unaccounted for", "{:.3g} J", last.whole.work_residual);
+  if (!r.choice.empty()) section.fact("chosen", r.choice);
   return section;
 }
 
 report::Section rounding_section(const std::vector<RoundingLine>& lines) {
-  report::Section section;
-  section.title = "Digits lost to round-off";
-  section.text =
+  report::NewSection section(
+      "Digits lost to round-off",
       "First-order estimate of the analytic model: the effect of one unit in the last place of "
-      "every input, and of rounding every operation the other way; shares of the reaction's peak.";
-  section.table.columns = {"reaction",    "inputs",        "arithmetic",
-                           "digits left", "weakest input", "at, deg"};
+      "every input, and of rounding every operation the other way; shares of the reaction's peak.");
+  section.columns("reaction", "inputs", "arithmetic", "digits left", "weakest input", "at, deg");
   for (const RoundingLine& line : lines)
-    section.table.rows.push_back({line.group, line.inputs, line.arithmetic,
-                                  std::round(-10 * std::log10(std::max(line.total(), 1e-16))) / 10,
-                                  line.input, line.theta_deg});
+    section.row(line.group, line.inputs, line.arithmetic,
+                std::round(-10 * std::log10(std::max(line.total(), 1e-16))) / 10, line.input,
+                line.theta_deg);
   return section;
 }
 
@@ -158,29 +147,26 @@ std::string digits_text(const EngineCell& cell) {
 
 // Results by group of channels: digits of agreement with the analytic model and with the curve.
 report::Table engine_table(const EngineComparison& engines) {
-  report::Table table;
-  table.columns = {"reaction", "peak"};
-  for (std::size_t i = 1; i < engines.results.size(); ++i)
-    table.columns.push_back(engines.results[i]);
+  report::NewSection made("");
+  made.columns("reaction", "peak", std::vector(engines.results.begin() + 1, engines.results.end()));
   if (!engines.curve.empty())
-    for (const std::string& name : engines.results) table.columns.push_back(name + ", curve");
-  table.columns.insert(table.columns.end(), {"largest difference", "at, deg", "stands alone"});
+    made.columns(
+        report::each_of(engines.results, [](const auto& name) { return name + ", curve"; }));
+  made.columns("largest difference", "at, deg", "stands alone");
   for (const EngineRow& row : engines.rows) {
-    std::vector<report::Cell> cells = {row.group, fmt::format("{:.4g} {}", row.peak, row.unit)};
+    std::vector<std::string> digits;
     EngineCell worst;
     for (std::size_t i = 1; i < engines.results.size(); ++i) {
-      cells.emplace_back(digits_text(row.pairs[0][i]));
+      digits.push_back(digits_text(row.pairs[0][i]));
       if (worst.difference.keep_larger(row.pairs[0][i].difference)) worst = row.pairs[0][i];
     }
     if (!engines.curve.empty())
       for (std::size_t i = 0; i < engines.results.size(); ++i)
-        cells.emplace_back(row.curve.empty() ? "" : digits_text(row.curve[i]));
-    cells.emplace_back(worst.channel);
-    cells.emplace_back(worst.theta_deg);
-    cells.emplace_back(row.odd);
-    table.rows.push_back(std::move(cells));
+        digits.push_back(row.curve.empty() ? "" : digits_text(row.curve[i]));
+    made.row(row.group, fmt::format("{:.4g} {}", row.peak, row.unit), digits, worst.channel,
+             worst.theta_deg, row.odd);
   }
-  return table;
+  return made.table;
 }
 
 std::string way_text(const EngineComparison& engines) {
@@ -196,56 +182,52 @@ std::string time_text(const EngineComparison& engines, const EngineRun& run) {
 
 // Time against error of engines that integrate.
 report::Section effort_section(const EngineComparison& engines) {
-  report::Section section;
-  section.title = "Engines: time against error";
-  section.text = fmt::format(
-      "One turn integrated at constant speed, with default settings and with one setting changed "
-      "at a time. Errors are the largest difference from the analytic model over the peak of a "
-      "reaction, at {} angles. Time is that of the turn, without building the model.",
-      engines.sweep_angles);
-  section.table.columns = {"engine",   "steps per turn", "setting", "time, ms",
-                           "error Rs", "largest error",  "in",      "not computed"};
+  report::NewSection section(
+      "Engines: time against error",
+      fmt::format("One turn integrated at constant speed, with default settings and with one "
+                  "setting changed at a time. Errors are the largest difference from the analytic "
+                  "model over the peak of a reaction, at {} angles. Time is that of the turn, "
+                  "without building the model.",
+                  engines.sweep_angles));
+  section.columns("engine", "steps per turn", "setting", "time, ms", "error Rs", "largest error",
+                  "in", "not computed");
   for (const EngineEffort& effort : engines.sweep) {
-    const bool is_there = effort.failure.empty();
-    const auto number = [&](double value) { return is_there ? value : not_computed(); };
-    section.table.rows.push_back({effort.engine, static_cast<double>(effort.steps),
-                                  effort.setting.empty() ? "defaults" : effort.setting,
-                                  number(1000 * effort.seconds), number(effort.joints),
-                                  number(effort.worst), effort.channel, effort.failure});
+    const auto number = [&](double value) {
+      return effort.failure.empty() ? value : not_computed();
+    };
+    section.row(effort.engine, static_cast<double>(effort.steps),
+                effort.setting.empty() ? "defaults" : effort.setting, number(1000 * effort.seconds),
+                number(effort.joints), number(effort.worst), effort.channel, effort.failure);
   }
   return section;
 }
 
 report::Section engine_section(const EngineComparison& engines) {
-  report::Section section;
-  section.title = "Engines";
-  section.text =
-      engines.headline() +
-      " The table has digits of agreement with the analytic model and, in the columns named curve, "
-      "with the stored curve, relative to the peak of a reaction. \"!\" marks a difference above "
-      "the "
-      "tolerance.";
-  section.text += engines.curve.empty()
-                      ? " There is no stored curve of this case."
-                      : fmt::format(
-                            " The stored curve is {}, of 50-digit arithmetic, at {} "
-                            "angles.",
-                            engines.curve, engines.curve_angles);
+  report::NewSection section(
+      "Engines", engines.headline() +
+                     " The table has digits of agreement with the analytic model and, in the "
+                     "columns named curve, with the stored curve, relative to the peak of a "
+                     "reaction. \"!\" marks a difference above the tolerance.");
+  if (engines.curve.empty())
+    section.say("There is no stored curve of this case.");
+  else
+    section.say("The stored curve is {}, of 50-digit arithmetic, at {} angles.", engines.curve,
+                engines.curve_angles);
   if (engines.way == EngineWay::integrated)
-    section.text += fmt::format(
-        " The engines integrate at constant speed, {} steps per turn, after a fifth of a turn in "
+    section.say(
+        "The engines integrate at constant speed, {} steps per turn, after a fifth of a turn in "
         "which joints settle; results at {} angles.",
         engines.steps, engines.angles);
   for (const EngineRun& run : engines.runs)
-    section.facts.emplace_back(
-        run.name, run.failure.empty()
-                      ? fmt::format("{}; {}, tolerance {:g}; {:.1e} of all that joints "
-                                    "carry is more than their supports can; {}",
-                                    run.text, way_text(engines), run.tolerance, run.residual,
-                                    time_text(engines, run))
-                      : "no results: " + run.failure);
+    section.fact(run.name,
+                 run.failure.empty()
+                     ? fmt::format("{}; {}, tolerance {:g}; {:.1e} of all that joints carry is "
+                                   "more than their supports can; {}",
+                                   run.text, way_text(engines), run.tolerance, run.residual,
+                                   time_text(engines, run))
+                     : "no results: " + run.failure);
   for (const auto& [channel, reason] : engines.not_given)
-    section.facts.emplace_back(channel, "not given: " + reason);
+    section.fact(channel, "not given: " + reason);
   section.table = engine_table(engines);
   return section;
 }
