@@ -1,15 +1,10 @@
 #include "bentaxis/study/budget_section.h"
 
-#include <fmt/format.h>
+#include <functional>
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
-#include "bentaxis/pump/number.h"
-#include "bentaxis/pump/units.h"
 #include "bentaxis/results/budget.h"
 #include "bentaxis/study/efficiency.h"
+#include "document_parts.h"
 
 namespace bentaxis::study {
 namespace {

@@ -1,13 +1,9 @@
 #include "bentaxis/study/case_sections.h"
 
-#include <fmt/format.h>
-
-#include <cmath>
-#include <string>
-
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/plausibility.h"
+#include "document_parts.h"
 
 namespace bentaxis::study {
 
@@ -29,13 +25,11 @@ std::vector<report::CommonInput> transfer_inputs(const Case& the_case, bool moti
                  "stated"
            : the_case.pump.gear.flanks == Flanks::two
                ? "one for each flank, whose separating part pushes the gears apart; written once "
-                 "in "
-                 "each model"
+                 "in each model"
                : "as printed, turned by the sense of rotation; written once in each model",
            the_case.pump.gear.flanks == Flanks::two
                ? "high-precision instants and the frame of O4; what one line of action would "
-                 "change is "
-                 "among the limits of validity"
+                 "change is among the limits of validity"
                : "high-precision curves and the frame of O4 check the algebra; that real teeth "
                  "have another line of action in reverse rotation and on the other flank is among "
                  "the limits of validity"});
@@ -196,11 +190,11 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
 
 std::vector<report::ValidityRow> validity_section(
     const std::vector<analytic::ValidityLimit>& limits) {
-  std::vector<report::ValidityRow> rows;
-  for (const auto& limit : limits)
-    rows.push_back({limit.limit, limit.unit, limit.consequence, limit.applicable,
-                    limit.violated_share, limit.worst, limit.theta_deg});
-  return rows;
+  return report::each_of(limits, [](const analytic::ValidityLimit& limit) {
+    return report::ValidityRow{limit.limit,      limit.unit,           limit.consequence,
+                               limit.applicable, limit.violated_share, limit.worst,
+                               limit.theta_deg};
+  });
 }
 
 std::vector<report::DerivedQuantity> derived_section(const Case& the_case) {

@@ -1,12 +1,7 @@
 #include "comparison_figures.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
-#include "bentaxis/pump/lists.h"
-#include "bentaxis/pump/number.h"
 #include "bentaxis/results/budget.h"
+#include "document_parts.h"
 
 namespace bentaxis::study {
 
@@ -48,10 +43,8 @@ std::vector<report::Figure> channel_figures(const std::vector<const ResultTable*
   figures.back().note = "Mean torque: " + joined(means) + ".";
 
   const auto has = [](const ResultTable& table, const char* name) {
-    const std::size_t column = table.find(name);
-    for (std::size_t row = 0; row < table.rows(); ++row)
-      if (is_computed(table.at(row, column))) return true;
-    return false;
+    const report::Values values = report::values_of(table, name);
+    return std::any_of(values.begin(), values.end(), is_computed);
   };
   const auto extras = [&](const char* channel) {
     std::vector<report::Series> list;

@@ -1,13 +1,8 @@
 #include "key_figures.h"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
-#include "bentaxis/pump/lists.h"
-#include "bentaxis/pump/units.h"
 #include "bentaxis/study/transfer_summary.h"
 #include "bentaxis/study/turn_summary.h"
+#include "document_parts.h"
 
 namespace bentaxis::study {
 namespace {
@@ -28,9 +23,7 @@ void add(std::vector<Row>& rows, Row row) {
 using Summaries = std::vector<TurnSummary>;
 
 Summaries summaries_of(const Tables& tables) {
-  Summaries summaries;
-  for (const ResultTable* table : tables) summaries.emplace_back(*table);
-  return summaries;
+  return report::each_of(tables, [](const ResultTable* table) { return TurnSummary(*table); });
 }
 
 // Forces that are unknowns of the equilibrium, and where Fh acts.
@@ -62,9 +55,9 @@ std::vector<Row> peaks(const Summaries& summaries, const std::vector<double>& at
 template <class Number>
 Row torque_row(const Summaries& summaries, const std::string& quantity, const std::string& unit,
                const Number& number) {
-  report::Values values;
-  for (const TurnSummary& summary : summaries) values.push_back(number(summary.torque()));
-  return key_row(quantity, "Td", unit, std::move(values));
+  return key_row(quantity, "Td", unit, report::each_of(summaries, [&](const TurnSummary& summary) {
+                   return number(summary.torque());
+                 }));
 }
 
 }  // namespace

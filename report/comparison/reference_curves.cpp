@@ -1,11 +1,7 @@
 #include "bentaxis/study/reference_curves.h"
 
-#include <utility>
-
-#include "bentaxis/pump/number.h"
-#include "bentaxis/pump/units.h"
-#include "bentaxis/report/document.h"
 #include "bentaxis/results/periodic_lines.h"
+#include "document_parts.h"
 
 namespace bentaxis::study {
 

@@ -1,16 +1,10 @@
 #include "bentaxis/study/teeth_section.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "bentaxis/analytic/teeth.h"
-#include "bentaxis/pump/lists.h"
-#include "bentaxis/pump/number.h"
-#include "bentaxis/pump/units.h"
 #include "bentaxis/results/teeth.h"
+#include "document_parts.h"
 
 namespace bentaxis::study {
 namespace {
@@ -39,8 +33,8 @@ double share_with(const ResultTable& table, int pairs) {
   for (std::size_t row = 0; row < table.rows(); ++row) {
     int carrying = 0;
     for (std::size_t c = 0; c < table.columns(); ++c)
-      if (table.channels[c].group == "share" && table.at(row, c) > 0) ++carrying;
-    if (carrying == pairs) ++rows;
+      carrying += table.channels[c].group == "share" && table.at(row, c) > 0 ? 1 : 0;
+    rows += carrying == pairs ? 1 : 0;
   }
   return static_cast<double>(rows) / static_cast<double>(table.rows());
 }
@@ -82,70 +76,67 @@ report::ScatterSeries path_of(const ResultTable& table, const PumpParameters& pu
   return series;
 }
 
-}  // namespace
-
-report::Section teeth_section(const TeethComparison& teeth, const PumpParameters& pump) {
-  const ToothData& data = *pump.gear.teeth;
-  report::Section section{
-      "Teeth in contact",
-      "Forces of the tooth pairs in static equilibrium under the torque that drives the block: "
-      "flank + pushes the block towards +psi, flank - towards -psi. Each model computes contact "
-      "and load shares independently.",
-      {},
-      {{"furthest apart", "peak of its kind", "unit", "difference", "of peak", "verdict",
-        "its own peak"},
-       {}}};
-  const Extent error = extent(teeth.analytic, "transmission_error_um");
-  const analytic::BevelTeeth shape(pump);
-  const analytic::BevelGeometry& at = shape.geometry();
-  const auto degrees = [](double radians) { return radians / kRadPerDegree; };
-  section.facts = {
-      {"teeth", fmt::format("{} on either gear, module {:.4g} mm, face width {:.4g} mm", data.count,
-                            1e3 * pump.gear.pitch_diameter / data.count, 1e3 * data.face_width)},
-      {"cones",
-       fmt::format("pitch {:.4g}, base {:.4g}, tip {:.4g}, root {:.4g} deg", degrees(at.pitch_cone),
-                   degrees(at.base_cone), degrees(at.tip_cone), degrees(at.root_cone))},
-      {"path of contact", fmt::format("{:.4g} to {:.4g} deg from O4 as seen from O2, base pitch "
-                                      "{:.4g} deg, contact ratio {:.4g}",
-                                      degrees(at.path_begin), degrees(at.path_end),
-                                      degrees(at.base_pitch), at.contact_ratio)},
-      {"stiffness of a pair at O4",
-       fmt::format("{:.4g} N/um, {:.4g} N/(mm um)", shape.stiffness() / 1e6,
-                   shape.stiffness() / 1e9 / data.face_width)},
-      {"transmission error",
-       fmt::format("{:.4g} to {:.4g} um along the line of action, backlash {:.4g} um", error.low,
-                   error.high, 1e6 * data.backlash)}};
-  for (const auto& [name, flank] : {std::pair{"plus_force_N", "+"}, {"minus_force_N", "-"}}) {
-    const Extent force = extent(teeth.analytic, name);
-    section.facts.emplace_back(fmt::format("force of flank {}", flank),
-                               force.high > 0
-                                   ? fmt::format("{:.4g} to {:.4g} N, largest at {:g} deg",
-                                                 force.low, force.high, force.theta_of_high_deg)
-                                   : "none");
-  }
-  for (int pairs = 0; pairs <= 2 * kPairsPerFlank; ++pairs)
-    if (const double share = share_with(teeth.analytic, pairs); share > 0)
-      section.facts.emplace_back(
-          fmt::format("{} {} under load", pairs, pairs == 1 ? "pair" : "pairs"),
-          fmt::format("{:.3g} % of the turn", 100 * share));
-  // The worst of each group: what differs before what does not.
+// The worst channel of each group: what differs before what does not.
+std::vector<const compare::ChannelComparison*> worst_lines(const compare::Comparison& comparison) {
   const auto beyond = [](const compare::ChannelComparison& line) {
     return std::pair{line.verdict == compare::Verdict::differs, line.largest_over_peak()};
   };
   std::vector<const compare::ChannelComparison*> worst;
-  for (const auto& line : teeth.comparison.channels) {
-    const auto same = std::find_if(worst.begin(), worst.end(), [&](const auto* other) {
-      return other->channel.group == line.channel.group;
-    });
+  for (const auto& line : comparison.channels) {
+    const auto same = std::ranges::find(worst, line.channel.group,
+                                        [](const auto* other) { return other->channel.group; });
     if (same == worst.end())
       worst.push_back(&line);
     else if (beyond(line) > beyond(**same))
       *same = &line;
   }
-  for (const auto* line : worst)
-    section.table.rows.push_back({line->channel.name, line->peak, line->channel.unit, line->largest,
-                                  line->largest_over_peak(),
-                                  std::string(compare::to_string(line->verdict)), line->own_peak});
+  return worst;
+}
+
+}  // namespace
+
+report::Section teeth_section(const TeethComparison& teeth, const PumpParameters& pump) {
+  const ToothData& data = *pump.gear.teeth;
+  report::NewSection section(
+      "Teeth in contact",
+      "Forces of the tooth pairs in static equilibrium under the torque that drives the block: "
+      "flank + pushes the block towards +psi, flank - towards -psi. Each model computes contact "
+      "and load shares independently.");
+  section.columns("furthest apart", "peak of its kind", "unit", "difference", "of peak", "verdict",
+                  "its own peak");
+  const Extent error = extent(teeth.analytic, "transmission_error_um");
+  const analytic::BevelTeeth shape(pump);
+  const analytic::BevelGeometry& at = shape.geometry();
+  const auto degrees = [](double radians) { return radians / kRadPerDegree; };
+  section.fact("teeth", "{} on either gear, module {:.4g} mm, face width {:.4g} mm", data.count,
+               1e3 * pump.gear.pitch_diameter / data.count, 1e3 * data.face_width);
+  section.fact("cones", "pitch {:.4g}, base {:.4g}, tip {:.4g}, root {:.4g} deg",
+               degrees(at.pitch_cone), degrees(at.base_cone), degrees(at.tip_cone),
+               degrees(at.root_cone));
+  section.fact("path of contact",
+               "{:.4g} to {:.4g} deg from O4 as seen from O2, base pitch {:.4g} deg, contact ratio "
+               "{:.4g}",
+               degrees(at.path_begin), degrees(at.path_end), degrees(at.base_pitch),
+               at.contact_ratio);
+  section.fact("stiffness of a pair at O4", "{:.4g} N/um, {:.4g} N/(mm um)",
+               shape.stiffness() / 1e6, shape.stiffness() / 1e9 / data.face_width);
+  section.fact("transmission error",
+               "{:.4g} to {:.4g} um along the line of action, backlash {:.4g} um", error.low,
+               error.high, 1e6 * data.backlash);
+  for (const auto& [name, flank] : {std::pair{"plus_force_N", "+"}, {"minus_force_N", "-"}}) {
+    const Extent force = extent(teeth.analytic, name);
+    section.fact(fmt::format("force of flank {}", flank),
+                 force.high > 0 ? fmt::format("{:.4g} to {:.4g} N, largest at {:g} deg", force.low,
+                                              force.high, force.theta_of_high_deg)
+                                : "none");
+  }
+  for (int pairs = 0; pairs <= 2 * kPairsPerFlank; ++pairs)
+    if (const double share = share_with(teeth.analytic, pairs); share > 0)
+      section.fact(fmt::format("{} {} under load", pairs, pairs == 1 ? "pair" : "pairs"),
+                   "{:.3g} % of the turn", 100 * share);
+  for (const auto* line : worst_lines(teeth.comparison))
+    section.row(line->channel.name, line->peak, line->channel.unit, line->largest,
+                line->largest_over_peak(), compare::to_string(line->verdict), line->own_peak);
   return section;
 }
 
