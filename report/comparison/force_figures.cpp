@@ -1,13 +1,7 @@
 #include "bentaxis/study/force_figures.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "bentaxis/pump/number.h"
-#include "bentaxis/pump/units.h"
 #include "bentaxis/results/channels.h"
+#include "document_parts.h"
 #include "force_figures_pieces.h"
 
 namespace bentaxis::study {
@@ -28,8 +22,8 @@ std::size_t nearest_frame(const DiagramRun& run, const std::vector<std::size_t>&
   const auto off = [&](std::size_t row) {
     return std::abs(std::remainder(run.table.theta_deg[row] - theta_deg, 360));
   };
-  const auto nearest = std::min_element(
-      rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return off(a) < off(b); });
+  const auto nearest =
+      std::ranges::min_element(rows, [&](std::size_t a, std::size_t b) { return off(a) < off(b); });
   return nearest == rows.end() ? 0 : static_cast<std::size_t>(nearest - rows.begin());
 }
 
@@ -45,20 +39,17 @@ std::vector<std::size_t> curve_rows(const DiagramRun& run) {
 }
 
 Values column(const DiagramRun& run, std::size_t at) {
-  Values values;
-  for (const std::size_t row : curve_rows(run)) values.push_back(run.table.at(row, at));
-  return values;
+  return report::each_of(curve_rows(run), [&](std::size_t row) { return run.table.at(row, at); });
 }
 
-bool any_computed(const Values& values) {
-  return std::any_of(values.begin(), values.end(), is_computed);
-}
+bool any_computed(const Values& values) { return std::ranges::any_of(values, is_computed); }
 
 // A figure over the axis of the run, without curves.
 OwnFigure over(const DiagramRun& run, const std::string& unit, const std::string& value) {
   const bool angle = run.time_ms.empty();
-  OwnFigure figure{unit, angle ? "shaft angle (deg)" : kTimeAxis, angle, {}};
-  for (const std::size_t row : curve_rows(run)) figure.x.push_back(along(run, row));
+  OwnFigure figure{
+      unit, angle ? "shaft angle (deg)" : kTimeAxis, angle,
+      report::each_of(curve_rows(run), [&](std::size_t row) { return along(run, row); })};
   figure.value = value;
   return figure;
 }
@@ -83,10 +74,7 @@ Figure bearing_loci(const DiagramRun& run, const ChannelLayout& at) {
             figure.points.push_back({fmt::format("{:g} deg", kQuarter * quarter),
                                      kKilo * run.table.at(row, x), kKilo * run.table.at(row, y)});
     // A turn ends where it began.
-    if (run.time_ms.empty() && series.x.size() > 2) {
-      series.x.push_back(series.x.front());
-      series.y.push_back(series.y.front());
-    }
+    if (run.time_ms.empty() && series.x.size() > 2) series.close();
     figure.series.push_back(std::move(series));
   }
   return {"bearing_loci", "Polar loci of the bearing forces on the shaft, across it, in S1", "",
@@ -98,16 +86,15 @@ Figure bearing_loci(const DiagramRun& run, const ChannelLayout& at) {
 
 Figure tooth_flanks(const DiagramRun& run, const ChannelLayout& at) {
   OwnFigure figure = over(run, "N", "force");
-  Values plus, minus;
-  for (const std::size_t row : curve_rows(run)) {
-    const double force = std::abs(run.table.at(row, at.Rcs()));
-    const bool drives = run.table.at(row, at.carrying()) >= 0;
-    const bool known = is_computed(run.table.at(row, at.Rcs()));
-    plus.push_back(!known ? not_computed() : drives ? force : 0);
-    minus.push_back(!known ? not_computed() : drives ? 0 : force);
-  }
-  figure.series = {{"flank + (drives the block towards +psi)", plus},
-                   {"flank - (holds it back)", minus}};
+  const auto of_flank = [&](bool plus) {
+    return report::each_of(curve_rows(run), [&](std::size_t row) {
+      const double force = std::abs(run.table.at(row, at.Rcs()));
+      const bool drives = run.table.at(row, at.carrying()) >= 0;
+      return is_computed(force) && drives != plus ? 0 : force;
+    });
+  };
+  figure.series = {{"flank + (drives the block towards +psi)", of_flank(true)},
+                   {"flank - (holds it back)", of_flank(false)}};
   return {"tooth_flanks", "Tooth force by flank, at O4", "", std::move(figure),
           run.the_case.pump.gear.flanks == Flanks::one &&
                   run.the_case.pump.gear.contact == ToothContact::rigid
@@ -136,7 +123,7 @@ Figure chamber(const DiagramRun& run, const ChannelLayout& at) {
   const double bore = run.the_case.pump.geometry.bore_diameter;
   const double cm3_per_mm = kPi / 4 * bore * bore * 1e-3 * 1e6;
   Values ring = column(run, at.zB(0));  // mm
-  const double deepest = *std::max_element(ring.begin(), ring.end());
+  const double deepest = *std::ranges::max_element(ring);
   for (double& value : ring) value = cm3_per_mm * (deepest - value);
   figure.series = {{"volume of chamber 1", std::move(ring)}};
   figure.right =

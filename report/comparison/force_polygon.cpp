@@ -1,12 +1,9 @@
 // Force polygons, from all loads on a body.
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/force_figures.h"
+#include "document_parts.h"
 #include "force_figures_pieces.h"
 
 namespace bentaxis::study {
@@ -40,9 +37,8 @@ std::vector<Family> families_of(const BodyLoadTable& table, const std::string& b
   for (std::size_t i = 0; i < table.loads.size(); ++i) {
     const BodyLoad& load = table.loads[i];
     if (load.on != body) continue;
-    auto family = std::find_if(families.begin(), families.end(), [&](const Family& f) {
-      return f.symbol == load.symbol && f.kind == load.kind;
-    });
+    auto family = std::ranges::find_if(
+        families, [&](const Family& f) { return f.symbol == load.symbol && f.kind == load.kind; });
     if (family == families.end()) {
       const std::string label = load.kind == ForceKind::inertia
                                     ? load.symbol
@@ -60,8 +56,8 @@ std::vector<Family> families_of(const BodyLoadTable& table, const std::string& b
     const bool found = f.kind == ForceKind::reaction;
     return std::pair{found, found ? f.peak : -f.peak};
   };
-  std::stable_sort(families.begin(), families.end(),
-                   [&](const Family& a, const Family& b) { return place(a) < place(b); });
+  std::ranges::stable_sort(families,
+                           [&](const Family& a, const Family& b) { return place(a) < place(b); });
   return families;
 }
 

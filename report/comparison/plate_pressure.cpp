@@ -1,13 +1,7 @@
 // Pressure on the port plate: ports, lands and chambers at angles over the run.
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "bentaxis/pump/number.h"
-#include "bentaxis/pump/units.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/study/force_figures.h"
+#include "document_parts.h"
 #include "force_figures_pieces.h"
 
 namespace bentaxis::study {
@@ -26,8 +20,7 @@ constexpr double kBeyond = 1.04;  // of the radius: a film force further out is 
 
 // A point to a micrometre: more is not seen.
 void put(DrawingFigure::Line& line, double x, double y) {
-  line.x.push_back(std::round(1e3 * x) / 1e3);
-  line.y.push_back(std::round(1e3 * y) / 1e3);
+  line.add(std::round(1e3 * x) / 1e3, std::round(1e3 * y) / 1e3);
 }
 
 // Between two radii (mm) and two angles from y2 towards -x2, closed.
