@@ -1,18 +1,8 @@
 #include "hydraulic_sections.h"
 
-#include <fmt/format.h>
-
-#include <utility>
-
-#include "bentaxis/pump/units.h"
+#include "document_parts.h"
 
 namespace bentaxis::study {
-
-report::Figure own_figure(const std::string& id, const std::string& title, const std::string& paper,
-                          const std::string& unit, const std::string& axis,
-                          const std::vector<double>& x) {
-  return {id, title, paper, report::OwnFigure{unit, axis, false, x}};
-}
 
 report::Figure angle_figure(const std::string& id, const std::string& title,
                             const std::string& paper, const std::string& unit,

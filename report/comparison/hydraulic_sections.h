@@ -10,15 +10,11 @@
 
 namespace bentaxis::study {
 
-/// A figure whose curves are over an axis of their own, still without curves.
-report::Figure own_figure(const std::string& id, const std::string& title, const std::string& paper,
-                          const std::string& unit, const std::string& axis,
-                          const std::vector<double>& x);
-/// A figure over the shaft angle.
+/// A figure over the shaft angle, still without curves.
 report::Figure angle_figure(const std::string& id, const std::string& title,
                             const std::string& paper, const std::string& unit,
                             const std::vector<double>& theta_deg);
-/// Adds a curve to either.
+/// Adds a curve to it.
 void add_series(report::Figure& figure, const std::string& label, std::vector<double> values);
 
 /// The operating point and how it was found.

@@ -1,18 +1,10 @@
 #include "bentaxis/study/pressure_document.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/pump/number.h"
-#include "bentaxis/pump/units.h"
 #include "bentaxis/study/efficiency.h"
 #include "bentaxis/study/failed_points.h"
-#include "bentaxis/study/published_section.h"
 #include "bentaxis/study/turn_summary.h"
 #include "document_parts.h"
 #include "hydraulic_results.h"
@@ -34,15 +26,13 @@ double bar(const OperatingPoint& point) {
 std::vector<std::string> pressure_answers(const OperatingPoint& point,
                                           const std::vector<report::TimingRow>& timing) {
   const hydraulics::Summary& s = point.state().summary;
-  std::vector<std::string> answers = {
-      fmt::format("{} {:.4g} l/min (at suction density) at a mean of {:.4g} bar and {:.5g} "
-                  "rpm: volumetric efficiency{} {:.4g} %, ripple {:.3g} bar peak to peak.",
-                  s.flow < 0 ? "Takes" : "Delivers", std::abs(s.flow) / kLitrePerMinute,
-                  s.delivery_mean / kPascalPerBar, point.the_case().operation.speed_rpm,
-                  s.motors() ? " as a motor" : "", 100 * s.volumetric_efficiency,
-                  (s.delivery_greatest - s.delivery_least) / kPascalPerBar)};
-  answers.push_back(timing_answer(timing));
-  return answers;
+  return {fmt::format("{} {:.4g} l/min (at suction density) at a mean of {:.4g} bar and {:.5g} "
+                      "rpm: volumetric efficiency{} {:.4g} %, ripple {:.3g} bar peak to peak.",
+                      s.flow < 0 ? "Takes" : "Delivers", std::abs(s.flow) / kLitrePerMinute,
+                      s.delivery_mean / kPascalPerBar, point.the_case().operation.speed_rpm,
+                      s.motors() ? " as a motor" : "", 100 * s.volumetric_efficiency,
+                      (s.delivery_greatest - s.delivery_least) / kPascalPerBar),
+          timing_answer(timing)};
 }
 
 report::Document pressure_document(const OperatingPoint& point,
@@ -50,62 +40,66 @@ report::Document pressure_document(const OperatingPoint& point,
                                    const report::Lines& program,
                                    const CaseDescription& description) {
   const Case& the_case = point.the_case();
+  const hydraulics::SteadyState& state = point.state();
   report::Document document = case_document(description, the_case.name, program);
-  document.key_figures = {{"hydraulic model"}, "deg", oil_figures(point.state().summary, 1)};
+  document.key_figures = {{"hydraulic model"}, "deg", oil_figures(state.summary, 1)};
   document.models = {report::model_of(point.analytic, {}), report::model_of(point.multibody, {})};
-  document.runs = {hydraulic_section(the_case, point.state()),
-                   power_section(the_case, point.state(), power), efficiency_section(point, power),
-                   orders_section(the_case, point.state())};
-  document.timing = timing_rows(the_case, point.state());
+  document.runs = {hydraulic_section(the_case, state), power_section(the_case, state, power),
+                   efficiency_section(point, power), orders_section(the_case, state)};
+  document.timing = timing_rows(the_case, state);
   report::append(document.warnings, timing_warnings(*document.timing));
-  document.verdict = report::Verdict{
-      std::nullopt,
-      fmt::format("Mean drive torque {:.5g} Nm by the analytic model, {:.5g} Nm by the multibody "
-                  "model, at {:.4g} bar.",
-                  mean(point.analytic, "Td_z1_Nm"), mean(point.multibody, "Td_z1_Nm"), bar(point)),
-      "Pressure"};
-  document.verdict->answers = pressure_answers(point, *document.timing);
-  document.figures = hydraulic_figures(the_case, point.state());
-  append(document.figures, result_figures(the_case, point.state(), power));
-  document.figures->push_back(
-      {"td", "Drive torque Td", "Fig. 17", report::ChannelFigure{"Nm", {"Td_z1_Nm"}},
-       fmt::format("Mean torque: analytic {:.5g} Nm, multibody {:.5g} Nm.",
-                   mean(point.analytic, "Td_z1_Nm"), mean(point.multibody, "Td_z1_Nm"))});
+  const double torques[] = {mean(point.analytic, "Td_z1_Nm"), mean(point.multibody, "Td_z1_Nm")};
+  document.verdict = {
+      .agrees = std::nullopt,
+      .headline = fmt::format("Mean drive torque {:.5g} Nm by the analytic model, {:.5g} Nm by the "
+                              "multibody model, at {:.4g} bar.",
+                              torques[0], torques[1], bar(point)),
+      .word = "Pressure",
+      .answers = pressure_answers(point, *document.timing)};
+  document.figures = hydraulic_figures(the_case, state);
+  append(document.figures, result_figures(the_case, state, power));
+  document.figures->push_back({"td", "Drive torque Td", "Fig. 17",
+                               report::ChannelFigure{"Nm", {"Td_z1_Nm"}},
+                               fmt::format("Mean torque: analytic {:.5g} Nm, multibody {:.5g} Nm.",
+                                           torques[0], torques[1])});
   return document;
 }
 
 void add_curve(report::Document& document, const TorqueCurve& curve) {
   const char* axis = "mean delivery pressure (bar)";
-  report::Figure torque = own_figure("torque_curve", "Mean drive torque against delivery pressure",
-                                     "Fig. 18", "Nm", axis, curve.bar);
-  add_series(torque, "analytic", curve.analytic);
-  add_series(torque, "multibody", curve.multibody);
-  add_series(torque, "ideal: displacement x pressure / 2 pi", curve.ideal);
-  report::Figure flow =
-      own_figure("flow_curve", "Mean flow against delivery pressure", "", "l/min", axis, curve.bar);
-  add_series(flow, "volume flow to the load, at the density in the suction port", curve.flow);
-  add_series(flow, "volume flow to the load, at the density of the mean delivery pressure",
-             curve.flow_at_delivery);
-  document.figures->push_back(std::move(torque));
-  document.figures->push_back(std::move(flow));
-  report::Section section{
+  document.figures->push_back(
+      {"torque_curve", "Mean drive torque against delivery pressure", "Fig. 18",
+       report::OwnFigure{"Nm",
+                         axis,
+                         false,
+                         curve.bar,
+                         {{"analytic", curve.analytic},
+                          {"multibody", curve.multibody},
+                          {"ideal: displacement x pressure / 2 pi", curve.ideal}}}});
+  document.figures->push_back(
+      {"flow_curve", "Mean flow against delivery pressure", "",
+       report::OwnFigure{
+           "l/min",
+           axis,
+           false,
+           curve.bar,
+           {{"volume flow to the load, at the density in the suction port", curve.flow},
+            {"volume flow to the load, at the density of the mean delivery pressure",
+             curve.flow_at_delivery}}}});
+  report::NewSection section(
       "Torque and flow against delivery pressure",
       "Each point: periodic hydraulic state, then both models over a turn. 0 bar is an open line. "
       "The flow and the volumetric efficiency are at the density in the suction port, the last "
-      "column at that of the mean delivery pressure.",
-      {},
-      {{"delivery, bar", "mean torque, analytic, Nm", "mean torque, multibody, Nm",
-        "ideal torque, Nm", "flow, l/min", "volumetric efficiency, %",
-        "flow at delivery pressure, l/min"},
-       {}}};
+      "column at that of the mean delivery pressure.");
+  section.columns("delivery, bar", "mean torque, analytic, Nm", "mean torque, multibody, Nm",
+                  "ideal torque, Nm", "flow, l/min", "volumetric efficiency, %",
+                  "flow at delivery pressure, l/min");
   for (std::size_t i = 0; i < curve.bar.size(); ++i)
-    section.table.rows.push_back({curve.bar[i], curve.analytic[i], curve.multibody[i],
-                                  curve.ideal[i], curve.flow[i], curve.efficiency[i],
-                                  curve.flow_at_delivery[i]});
+    section.row(curve.bar[i], curve.analytic[i], curve.multibody[i], curve.ideal[i], curve.flow[i],
+                curve.efficiency[i], curve.flow_at_delivery[i]);
   for (const FailedPoint& failed : curve.failed) {
-    section.table.rows.push_back({failed.value, report::Cell(), report::Cell(), report::Cell(),
-                                  report::Cell(), report::Cell(), report::Cell()});
-    section.facts.emplace_back(failed.point + ": not computed", failed.reason);
+    section.row(failed.value);
+    section.fact(failed.point + ": not computed", failed.reason);
   }
   add_warnings(document, curve.failed);
   document.runs->push_back(std::move(section));
@@ -113,8 +107,7 @@ void add_curve(report::Document& document, const TorqueCurve& curve) {
 
 void add_overlay(report::Document& document, const OperatingPoint& first,
                  const OperatingPoint& second) {
-  const std::size_t rows = first.analytic.rows();
-  if (second.analytic.rows() != rows)
+  if (second.analytic.rows() != first.analytic.rows())
     throw InputError(second.the_case().file.string() +
                      ": must have the same samples_per_revolution as " +
                      first.the_case().file.string());
@@ -130,8 +123,7 @@ void add_overlay(report::Document& document, const OperatingPoint& first,
       for (const std::string& channel : channels) {
         const std::vector<double> turn = report::values_of(point->analytic, channel);
         std::vector<double> values;
-        for (int i = 0; i < kOverlayTurns; ++i)
-          values.insert(values.end(), turn.begin(), turn.end());
+        for (int i = 0; i < kOverlayTurns; ++i) append(values, turn);
         add_series(figure, fmt::format("{} at {:.4g} bar", channel, bar(*point)), values);
         worst.keep_larger(comparison.find(channel)->difference());
       }
@@ -151,9 +143,8 @@ void add_overlay(report::Document& document, const OperatingPoint& first,
       {"Rb1_x1_N", "Rb1_y1_N", "Rb1_z1_N"});
   add("overlay_rb2", "Cylindrical bearing force Rb2: both loads", "Fig. 24",
       {"Rb2_x1_N", "Rb2_y1_N"});
-  report::Section section = hydraulic_section(second.the_case(), second.state());
-  section.title = "Hydraulic model: " + second.the_case().name;
-  document.runs->push_back(std::move(section));
+  document.runs->push_back(hydraulic_section(second.the_case(), second.state()));
+  document.runs->back().title = "Hydraulic model: " + second.the_case().name;
 }
 
 void add_published(report::Document& document, compare::PublishedSection section) {
@@ -184,11 +175,14 @@ std::string text_of(const compare::PublishedSection& section) {
 }
 
 void add_transient(report::Document& document, const ResultTable& transient) {
+  const auto values = [&](std::size_t column) {
+    return report::values_of(transient, transient.channels[column].name);
+  };
   report::Figure figure =
       angle_figure("transient", "From rest: pressures with the shaft at full speed at once", "",
                    "bar", transient.theta_deg);
-  add_series(figure, "chamber 1", report::values_of(transient, transient.channels[0].name));
-  add_series(figure, "delivery volume", report::values_of(transient, transient.channels[1].name));
+  add_series(figure, "chamber 1", values(0));
+  add_series(figure, "delivery volume", values(1));
   figure.note = "The load is that of the periodic state.";
   document.figures->push_back(std::move(figure));
 }
@@ -240,10 +234,8 @@ std::string pressure_text(const OperatingPoint& point, const hydraulics::PowerBu
   for (const EfficiencyLine& line : efficiency_lines())
     if (is_computed(all.*line.value) && line.value != &Efficiencies::volumetric)
       add(std::string(line.name) + " efficiency", all.*line.value, "%");
-  text += "\n" + timing_text(*document.timing) + "\n";
-  for (const report::Warning& warning : *document.warnings)
-    text += fmt::format("warning: {}: {}\n", warning.name, warning.text);
-  return text;
+  return text + "\n" + timing_text(*document.timing) + "\n" +
+         report::warnings_text(*document.warnings);
 }
 
 }  // namespace bentaxis::study
