@@ -1,13 +1,5 @@
 #include "hydraulic_results.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
-#include "bentaxis/pump/number.h"
-#include "bentaxis/pump/units.h"
 #include "bentaxis/study/efficiency.h"
 #include "document_parts.h"
 #include "hydraulic_sections.h"
@@ -27,7 +19,12 @@ constexpr int kLawPoints = 300;
 
 double turns_per_second(const Case& the_case) { return the_case.operation.speed_rpm / 60; }
 
-double per_degree(double per_radian) { return per_radian * kRadPerDegree / kPascalPerBar; }
+// dp/dtheta of a chamber, bar/deg: orders from 1 to the last of the outlet.
+report::Values rates_of(const SteadyState& state) {
+  return report::each_of(
+      hydraulics::orders_of_rate(*state.computed, state.orders.back().order),
+      [](double per_radian) { return per_radian * kRadPerDegree / kPascalPerBar; });
+}
 
 // Of the pistons' power.
 double share(const PowerBudget& power, double watts) { return watts / power[Place::pistons]; }
@@ -36,8 +33,7 @@ double share(const PowerBudget& power, double watts) { return watts / power[Plac
 report::XySeries loop(const ResultTable& table, const std::string& label, const std::string& x,
                       const std::string& y) {
   report::XySeries series{label, report::values_of(table, x), report::values_of(table, y)};
-  series.x.push_back(series.x.front());
-  series.y.push_back(series.y.front());
+  series.close();
   return series;
 }
 
@@ -49,9 +45,8 @@ report::Figure law_figure(const Case& the_case, const SteadyState& state) {
   report::XySeries law{"effective bulk modulus", {}, {}};
   for (int i = 0; i < kLawPoints; ++i) {
     const double pressure = lowest * std::pow(highest / lowest, i / (kLawPoints - 1.0));
-    law.x.push_back(pressure / kPascalPerBar);
-    law.y.push_back(hydraulics::effective_bulk_modulus(state, pressure - data.atmosphere) /
-                    kMegapascal);
+    law.add(pressure / kPascalPerBar,
+            hydraulics::effective_bulk_modulus(state, pressure - data.atmosphere) / kMegapascal);
   }
   return {"bulk_modulus_law", "Effective bulk modulus of the oil over pressure", "",
           report::XyFigure{{"absolute pressure", "bar", true},
@@ -60,14 +55,15 @@ report::Figure law_figure(const Case& the_case, const SteadyState& state) {
           "Density x dP/d density of oil with its air (docs/hydraulics.md)."};
 }
 
+report::ScatterPoint point(int order, double amplitude, double hertz) {
+  return {static_cast<double>(order), amplitude, fmt::format("{:.5g} Hz", order * hertz)};
+}
+
 std::vector<report::ScatterPoint> points(const std::vector<hydraulics::Order>& orders,
                                          double hydraulics::Order::*value, double unit,
                                          double hertz) {
-  std::vector<report::ScatterPoint> all;
-  for (const auto& order : orders)
-    all.push_back({static_cast<double>(order.order), order.*value / unit,
-                   fmt::format("{:.5g} Hz", order.order * hertz)});
-  return all;
+  return report::each_of(
+      orders, [&](const auto& one) { return point(one.order, one.*value / unit, hertz); });
 }
 
 report::Figure orders_figure(const std::string& id, const std::string& title,
@@ -83,27 +79,25 @@ report::Figure orders_figure(const std::string& id, const std::string& title,
 
 report::Section power_section(const Case& the_case, const SteadyState& state,
                               const PowerBudget& power) {
-  report::Section section{
+  report::NewSection section(
       "Power and losses by place",
       "Means over a turn, all chambers. What flows from one pressure to another loses the mass "
       "flow times the difference of the oil's pressure potential, the integral of dP/density; "
       "compression returns the energy that it takes. The residual is the sources less all other "
-      "rows.",
-      {},
-      {{"place", "what", "mean power, W", "of the pistons' power, %"}, {}}};
+      "rows.");
+  section.columns("place", "what", "mean power, W", "of the pistons' power, %");
   const double indicated =
       state.indicated_work * the_case.pump.geometry.pistons * turns_per_second(the_case);
-  section.facts = {
-      {"residual, of the power of the pistons",
-       fmt::format("{:.1e}", share(power, hydraulics::left_over(power)))},
-      {"efficiency: load less oil taken in, over the pistons",
-       fmt::format("{:.4g} %", 100 * share(power, power[Place::load] - power[Place::tank]))},
-      {"indicated work of a chamber per turn, area of its p-V diagram",
-       fmt::format("{:.6g} J", state.indicated_work)},
-      {"that of all chambers x speed over the pistons' power, less 1",
-       fmt::format("{:.1e}", share(power, indicated) - 1)}};
+  section.fact("residual, of the power of the pistons", "{:.1e}",
+               share(power, hydraulics::left_over(power)));
+  section.fact("efficiency: load less oil taken in, over the pistons", "{:.4g} %",
+               100 * share(power, power[Place::load] - power[Place::tank]));
+  section.fact("indicated work of a chamber per turn, area of its p-V diagram", "{:.6g} J",
+               state.indicated_work);
+  section.fact("that of all chambers x speed over the pistons' power, less 1", "{:.1e}",
+               share(power, indicated) - 1);
   const auto add = [&](const std::string& place, const std::string& what, double watts) {
-    section.table.rows.push_back({place, what, watts, 100 * share(power, watts)});
+    section.row(place, what, watts, 100 * share(power, watts));
   };
   for (const Place place : state.places)
     add(hydraulics::name_of(place), hydraulics::name_of(hydraulics::use_of(place)), power[place]);
@@ -116,48 +110,44 @@ report::Section efficiency_section(const OperatingPoint& point, const PowerBudge
   const hydraulics::PumpPower oil = hydraulics::pump_power(power);
   const double omega = rad_per_second(point.the_case().operation.speed_rpm);
   const double torques[] = {mean(point.analytic, "Td_z1_Nm"), mean(point.multibody, "Td_z1_Nm")};
-  report::Section section{
+  report::NewSection section(
       "Power and efficiency of the pump",
       "Means over a turn. The power to the load is carried by the oil out through the delivery "
       "port less in through the suction port: mass flow x pressure potential, with the work of "
-      "compression (docs/budgets.md).",
-      {},
-      {{"quantity", "unit", point.analytic.name, point.multibody.name, "definition"}, {}}};
-  const auto watts = [&](const char* name, double analytic, double multibody, const char* text) {
-    section.table.rows.push_back({name, "W", analytic, multibody, text});
+      "compression (docs/budgets.md).");
+  section.columns("quantity", "unit", point.analytic.name, point.multibody.name, "definition");
+  section.row("drive", "W", torques[0] * omega, torques[1] * omega, "mean Td x speed");
+  const auto oil_watts = [&](const char* name, double watts, const char* text) {
+    section.row(name, "W", watts, watts, text);
   };
-  watts("drive", torques[0] * omega, torques[1] * omega, "mean Td x speed");
-  watts("pistons on the oil, by the hydraulic model", oil.pistons, oil.pistons, "mean of -p dV/dt");
-  watts("flow to the load", oil.useful, oil.useful,
-        "mass flow x pressure potential, delivery port less suction port");
-  watts("in the oil", oil.lost(), oil.lost(), "pistons on the oil less the flow to the load");
+  oil_watts("pistons on the oil, by the hydraulic model", oil.pistons, "mean of -p dV/dt");
+  oil_watts("flow to the load", oil.useful,
+            "mass flow x pressure potential, delivery port less suction port");
+  oil_watts("in the oil", oil.lost(), "pistons on the oil less the flow to the load");
   const Efficiencies analytic = efficiencies(point.ready, oil, torques[0]);
   const Efficiencies multibody = efficiencies(point.ready, oil, torques[1]);
   for (const EfficiencyLine& line : efficiency_lines())
     if (is_computed(analytic.*line.value))
-      section.table.rows.push_back({std::string(line.name) + " efficiency", "%",
-                                    analytic.*line.value, multibody.*line.value, line.meaning});
+      section.row(std::string(line.name) + " efficiency", "%", analytic.*line.value,
+                  multibody.*line.value, line.meaning);
   return section;
 }
 
 report::Section orders_section(const Case& the_case, const SteadyState& state) {
-  report::Section section{
+  report::NewSection section(
       "Orders",
       "Amplitudes of harmonics of the shaft's angle. The outlet has multiples of the number of "
-      "pistons only; dp/dtheta of a chamber has all, which orders.csv lists.",
-      {},
-      {{"order", "frequency, Hz", "flow to the load, l/min", "of its mean, %",
-        "delivery pressure, bar", "pressure in front of the load, bar",
-        "dp/dtheta of a chamber, bar/deg"},
-       {}}};
-  const auto rate = hydraulics::orders_of_rate(*state.computed, state.orders.back().order);
+      "pistons only; dp/dtheta of a chamber has all, which orders.csv lists.");
+  section.columns("order", "frequency, Hz", "flow to the load, l/min", "of its mean, %",
+                  "delivery pressure, bar", "pressure in front of the load, bar",
+                  "dp/dtheta of a chamber, bar/deg");
+  const report::Values rates = rates_of(state);
   const auto& s = state.summary;
   for (const auto& order : state.orders)
-    section.table.rows.push_back(
-        {static_cast<long>(order.order), order.order * turns_per_second(the_case),
-         order.flow / s.density / kLitrePerMinute, 100 * order.flow / s.mass_flow,
-         order.delivery / kPascalPerBar, order.load_pressure / kPascalPerBar,
-         per_degree(rate[order.order - 1])});
+    section.row(order.order, order.order * turns_per_second(the_case),
+                order.flow / s.density / kLitrePerMinute, 100 * order.flow / s.mass_flow,
+                order.delivery / kPascalPerBar, order.load_pressure / kPascalPerBar,
+                rates[order.order - 1]);
   return section;
 }
 
@@ -227,11 +217,8 @@ std::vector<report::Figure> result_figures(const Case& the_case, const SteadySta
   figures.push_back(orders_figure("orders_pressure", "Orders of the delivery pressure",
                                   "amplitude (bar)", std::move(pressure), hertz));
   report::ScatterSeries rate{"chamber", 0, false, false, {}};
-  const auto rates = hydraulics::orders_of_rate(*state.computed, state.orders.back().order);
-  for (std::size_t i = 0; i < rates.size(); ++i) {
-    const auto order = static_cast<double>(i + 1);
-    rate.points.push_back({order, per_degree(rates[i]), fmt::format("{:.5g} Hz", order * hertz)});
-  }
+  for (const double amplitude : rates_of(state))
+    rate.points.push_back(point(static_cast<int>(rate.points.size()) + 1, amplitude, hertz));
   figures.push_back(orders_figure("orders_rate", "Orders of dp/dtheta of a chamber",
                                   "amplitude (bar/deg)", {std::move(rate)}, hertz));
   return figures;
@@ -247,7 +234,7 @@ std::string power_csv(const SteadyState& state, const PowerBudget& power) {
 
 std::string orders_csv(const Case& the_case, const SteadyState& state) {
   CsvRows csv("order,frequency_Hz,Qload_l_per_min,p_delivery_bar,p_load_bar,dp_1_bar_per_deg");
-  const auto rates = hydraulics::orders_of_rate(*state.computed, state.orders.back().order);
+  const report::Values rates = rates_of(state);
   const int n = the_case.pump.geometry.pistons;
   for (std::size_t i = 0; i < rates.size(); ++i) {
     const int number = static_cast<int>(i) + 1;
@@ -255,7 +242,7 @@ std::string orders_csv(const Case& the_case, const SteadyState& state) {
         number % n == 0 ? state.orders[number / n - 1] : hydraulics::Order{};
     csv.row(number, number * turns_per_second(the_case),
             order.flow / state.summary.density / kLitrePerMinute, order.delivery / kPascalPerBar,
-            order.load_pressure / kPascalPerBar, per_degree(rates[i]));
+            order.load_pressure / kPascalPerBar, rates[i]);
   }
   return std::move(csv).text();
 }
