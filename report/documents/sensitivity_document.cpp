@@ -1,20 +1,13 @@
 #include "bentaxis/designs/sensitivity_document.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-
-#include "answers_text.h"
 #include "bentaxis/designs/independence.h"
-#include "bentaxis/pump/number.h"
 #include "document_parts.h"
 
 namespace bentaxis::designs {
 namespace {
 
 using report::Cell;
+using report::NewSection;
 using report::Section;
 
 constexpr std::size_t kBars = 20;       // of a figure, at most,
@@ -36,15 +29,8 @@ bool no_influence(const Sensitivities& s, std::size_t o, std::size_t v) {
 
 // Variables by what one percent of them changes, most first; what has no derivative last.
 std::vector<std::size_t> by_effect(const Sensitivities& s, std::size_t o) {
-  std::vector<std::size_t> order(s.variables.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto size = [&](std::size_t v) {
-    const double e = effect(s, o, v);
-    return is_computed(e) ? std::abs(e) : -1;
-  };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
-  return order;
+  return report::by_size(s.variables.size(),
+                         [&](std::size_t v) { return std::abs(effect(s, o, v)); });
 }
 
 std::string per(const std::string& unit, const std::string& by) {
@@ -54,12 +40,14 @@ std::string per(const std::string& unit, const std::string& by) {
 }
 
 Section outputs_section(const Sensitivities& s) {
-  Section section{"Outputs", "", {}, {{"output", "value", "unit", "meaning"}, {}}};
+  NewSection section("Outputs");
+  section.columns("output", "value", "unit", "meaning");
   for (std::size_t o = 0; o < s.outputs.size(); ++o)
-    section.table.rows.push_back(
-        {s.outputs[o].name, s.values[o], s.outputs[o].unit, s.outputs[o].meaning});
+    section.row(s.outputs[o].name, s.values[o], s.outputs[o].unit, s.outputs[o].meaning);
   return section;
 }
+
+std::string found_by(const Derivative& d) { return d.reason.empty() ? to_string(d.way) : d.reason; }
 
 // Of these the case says nothing: a parameter that they take their value from moves them as well,
 // so that the same edge, say, has a row of its own under either name.
@@ -68,10 +56,10 @@ std::string followers_text(const Sensitivities& s) {
   const Family family(s.base, {});
   for (const Family::Follower& follower : family.followers()) {
     const std::string name = follower.table->name + "." + follower.parameter->key;
-    const bool there = std::any_of(s.variables.begin(), s.variables.end(), [&](const Variable& v) {
-      return v.name() == name || v.name() == name + ".1" || v.name() == name + ".2";
-    });
-    if (there) names.push_back(name);
+    if (std::ranges::any_of(s.variables, [&](const Variable& v) {
+          return v.name() == name || v.name() == name + ".1" || v.name() == name + ".2";
+        }))
+      names.push_back(name);
   }
   if (names.empty()) return {};
   return "The case does not give " + joined(names) +
@@ -81,30 +69,25 @@ std::string followers_text(const Sensitivities& s) {
 
 Section derivatives_section(const Sensitivities& s, std::size_t o) {
   const Output& output = s.outputs[o];
-  Section section{
-      "Derivatives of " + output.name,
-      "",
-      {},
-      {{"parameter", "value", "unit", "derivative", "of unit", "by +1 % (" + output.unit + ")",
-        "elasticity (%/%)", "found by", "error of the derivative"},
-       {}}};
-  std::string none;
+  NewSection section("Derivatives of " + output.name);
+  section.columns("parameter", "value", "unit", "derivative", "of unit",
+                  "by +1 % (" + output.unit + ")", "elasticity (%/%)", "found by",
+                  "error of the derivative");
+  std::vector<std::string> none;
   for (const std::size_t v : by_effect(s, o)) {
     const Derivative& d = s.derivatives[o][v];
     const Variable& variable = s.variables[v];
     if (no_influence(s, o, v)) {
-      none += (none.empty() ? "No influence: " : ", ") + variable.name();
+      none.push_back(variable.name());
       continue;
     }
-    section.table.rows.push_back(
-        {variable.name(), s.at[v], variable.unit(), d.value, per(output.unit, variable.unit()),
-         effect(s, o, v), s.elasticity(o, v), d.reason.empty() ? to_string(d.way) : d.reason,
-         d.way == Way::exact && d.error <= kRoundOff * std::abs(d.value) ? Cell("round-off")
-                                                                         : Cell(d.error)});
+    const bool exact = d.way == Way::exact && d.error <= kRoundOff * std::abs(d.value);
+    section.row(variable.name(), s.at[v], variable.unit(), d.value,
+                per(output.unit, variable.unit()), effect(s, o, v), s.elasticity(o, v), found_by(d),
+                exact ? Cell("round-off") : Cell(d.error));
   }
-  if (!none.empty()) section.text = none + ".";
-  if (const std::string text = followers_text(s); !text.empty())
-    section.text += (section.text.empty() ? "" : " ") + text;
+  if (!none.empty()) section.say("No influence: " + joined(none) + ".");
+  if (const std::string text = followers_text(s); !text.empty()) section.say(text);
   return section;
 }
 
@@ -124,10 +107,11 @@ report::Figure tornado(const Sensitivities& s, std::size_t o) {
   return {fmt::format("tornado_{}", o + 1), "What moves " + output.name, "", std::move(bars)};
 }
 
-std::size_t count_of(const Sensitivities& s, Way way) {
+std::size_t derivatives_by(const Sensitivities& s, Way way) {
   std::size_t count = 0;
   for (const auto& row : s.derivatives)
-    for (const Derivative& d : row) count += d.way == way && is_computed(d.value) ? 1 : 0;
+    count += report::count_of(
+        row, [&](const Derivative& d) { return d.way == way && is_computed(d.value); });
   return count;
 }
 
@@ -139,9 +123,12 @@ std::string headline(const Sensitivities& s, const std::optional<SensitivityChec
   if (!check)
     return fmt::format(
         "{}{} derivatives {}, {} by differences", s.left_out.empty() ? "" : "Interrupted: ",
-        count_of(s, Way::exact) + count_of(s, Way::forward),
+        derivatives_by(s, Way::exact) + derivatives_by(s, Way::forward),
         s.base.pressure.kind == PressureKind::hydraulic ? "by forward sensitivities" : "exact",
-        count_of(s, Way::differences));
+        derivatives_by(s, Way::differences));
+  if (check->compared == 0 || check->lacking > 0)
+    return fmt::format("{} of {} derivatives could be compared; of {} one model alone has a value",
+                       check->compared, s.outputs.size() * s.variables.size(), check->lacking);
   const std::string worst = check->worst > 0
                                 ? fmt::format(" ({} by {})", s.outputs[check->output].name,
                                               s.variables[check->variable].name())
@@ -207,19 +194,19 @@ std::vector<std::string> answers_of(const Sensitivities& s,
 }
 
 Section check_section(const Sensitivities& s, const SensitivityCheck& check) {
-  Section section{
+  NewSection section(
       "Against " + other_model(check),
       "Central differences of the other model, extrapolated to no step. The difference of both "
       "derivatives is taken times the parameter's value and over the output's scale, the peak of "
-      "its curve over the turn.",
-      {},
-      {{"output", "parameter", "derivative", "by the other model", "its error", "difference"}, {}}};
-  section.facts = not_checked(s, check);
+      "its curve over the turn.");
+  section.columns("output", "parameter", "derivative", "by the other model", "its error",
+                  "difference");
+  for (const auto& [name, text] : not_checked(s, check)) section.fact(name, text);
   for (std::size_t o = 0; o < s.outputs.size(); ++o)
     for (std::size_t v = 0; v < s.variables.size(); ++v)
-      section.table.rows.push_back({s.outputs[o].name, s.variables[v].name(),
-                                    s.derivatives[o][v].value, check.other.derivatives[o][v].value,
-                                    check.other.derivatives[o][v].error, check.differences[o][v]});
+      section.row(s.outputs[o].name, s.variables[v].name(), s.derivatives[o][v].value,
+                  check.other.derivatives[o][v].value, check.other.derivatives[o][v].error,
+                  check.differences[o][v]);
   return section;
 }
 
@@ -238,9 +225,10 @@ report::Document sensitivity_document(const Sensitivities& found,
                                       const study::CaseDescription& description) {
   report::Document document =
       study::case_document(description, "Sensitivities: " + found.base.name, program);
-  document.verdict = report::Verdict{check ? std::optional<bool>(check->agrees()) : std::nullopt,
-                                     headline(found, check), check ? "" : "Sensitivities"};
-  document.verdict->answers = answers_of(found, check);
+  document.verdict = {.agrees = check ? std::optional<bool>(check->agrees()) : std::nullopt,
+                      .headline = headline(found, check),
+                      .word = check ? "" : "Sensitivities",
+                      .answers = answers_of(found, check)};
   if (!found.left_out.empty())
     report::append(document.warnings, report::Warning{"interrupted", left_out_text(found)});
   document.meaning =
@@ -251,15 +239,13 @@ report::Document sensitivity_document(const Sensitivities& found,
   if (found.base.pressure.kind == PressureKind::hydraulic)
     document.meaning +=
         " The pressure is that of a periodic state: each difference compares two such states.";
-  std::vector<Section> sections = {outputs_section(found)};
-  std::vector<report::Figure> figures;
+  document.runs = {outputs_section(found)};
+  document.figures.emplace();
   for (std::size_t o = 0; o < found.outputs.size(); ++o) {
-    sections.push_back(derivatives_section(found, o));
-    figures.push_back(tornado(found, o));
+    document.runs->push_back(derivatives_section(found, o));
+    document.figures->push_back(tornado(found, o));
   }
-  if (check) sections.push_back(check_section(found, *check));
-  document.runs = std::move(sections);
-  document.figures = std::move(figures);
+  if (check) document.runs->push_back(check_section(found, *check));
   return document;
 }
 
@@ -284,6 +270,9 @@ std::string sensitivity_csv(const Sensitivities& found,
 
 std::string sensitivity_text(const Sensitivities& found,
                              const std::optional<SensitivityCheck>& check) {
+  const auto number = [](double value) {
+    return is_computed(value) ? fmt::format("{:.6g}", value) : std::string("-");
+  };
   std::string text =
       report::answers_text(found.base.name, headline(found, check), answers_of(found, check));
   text.pop_back();
@@ -295,14 +284,10 @@ std::string sensitivity_text(const Sensitivities& found,
     for (std::size_t i = 0; i < std::min(kTextLines, order.size()); ++i) {
       const std::size_t v = order[i];
       const Derivative& d = found.derivatives[o][v];
-      const auto number = [](double value) {
-        return is_computed(value) ? fmt::format("{:.6g}", value) : std::string("-");
-      };
       const bool none = no_influence(found, o, v);
       text += fmt::format("{:<34} {:>12} {:>13} {:>12}  {}\n", found.variables[v].name(),
                           number(found.at[v]), none ? "0" : number(d.value),
-                          none ? "-" : number(found.elasticity(o, v)),
-                          d.reason.empty() ? to_string(d.way) : d.reason);
+                          none ? "-" : number(found.elasticity(o, v)), found_by(d));
     }
     if (order.size() > kTextLines)
       text += fmt::format("and {} more in sensitivity.csv\n", order.size() - kTextLines);
