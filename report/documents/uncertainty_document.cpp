@@ -1,9 +1,5 @@
 #include "bentaxis/designs/uncertainty_document.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "bentaxis/pump/fixed_text.h"
@@ -13,7 +9,7 @@
 namespace bentaxis::designs {
 namespace {
 
-using report::Cell;
+using report::NewSection;
 using report::Section;
 
 std::string percent(double share) { return fmt::format("{:g} %", 100 * share); }
@@ -50,40 +46,54 @@ std::string percent_text(double share) {
                                    : fmt::format("{:.2g} %", 100 * share);
 }
 
+// What a parameter contributes to an output, to first order. @param at  as for_each_pair has it
+double contribution(const UncertaintyResult& result, std::size_t at) {
+  const std::size_t variable = at % result.variables.size();
+  return result.first_order.derivatives[at] *
+         result.variables.distributions[variable].standard_deviation();
+}
+report::Values contributions(const UncertaintyResult& result, std::size_t o) {
+  const std::size_t n = result.variables.size();
+  return report::values_at(n, [&](std::size_t i) { return contribution(result, o * n + i); });
+}
+
+// use(output, variable, place in the lists of all pairs) of every output and variable.
+template <class Use>
+void for_each_pair(const UncertaintyResult& result, const Use& use) {
+  std::size_t at = 0;
+  for (const UncertainOutput& o : result.outputs)
+    for (const Variable& variable : result.variables.variables) use(o.output, variable, at++);
+}
+
 // The parameters that make most of an output's variance, to first order: "pump.tilt_deg 78 %".
 std::string largest_shares(const UncertaintyResult& result, std::size_t o) {
   constexpr std::size_t kNamed = 2;
   const std::size_t n = result.variables.size();
-  std::vector<std::pair<double, std::size_t>> squares;
+  const report::Values parts = contributions(result, o);
   double sum = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double part = result.first_order.derivatives[o * n + i] *
-                        result.variables.distributions[i].standard_deviation();
+  for (const double part : parts) {
     if (!is_computed(part)) return "";
-    squares.emplace_back(part * part, i);
     sum += part * part;
   }
   if (!(sum > 0) || !result.variables.independent()) return "";
-  std::stable_sort(squares.begin(), squares.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::string text;
-  for (std::size_t i = 0; i < std::min(kNamed, n); ++i)
-    text += fmt::format("{}{} {}", i == 0 ? "" : ", ",
-                        result.variables.variables[squares[i].second].name(),
-                        percent_text(squares[i].first / sum));
-  return text;
+  auto order = report::by_size(n, [&](std::size_t i) { return parts[i] * parts[i]; });
+  order.resize(std::min(kNamed, n));
+  return joined(order, ", ", [&](std::size_t i) {
+    return result.variables.variables[i].name() + " " + percent_text(parts[i] * parts[i] / sum);
+  });
+}
+
+std::string variance_text(const UncertaintyResult& result, std::size_t o) {
+  const std::string shares = result.options.first_order ? largest_shares(result, o) : "";
+  return shares.empty() ? "" : "; of its variance " + shares;
 }
 
 // What each output may be, and what makes most of it.
 std::vector<std::string> answers_of(const UncertaintyResult& result) {
   std::vector<std::string> answers;
-  for (std::size_t o = 0; o < result.outputs.size(); ++o) {
-    std::string text = in_words(result.outputs[o], result.options.level);
-    if (result.options.first_order)
-      if (const std::string shares = largest_shares(result, o); !shares.empty())
-        text += "; of its variance " + shares;
-    answers.push_back(text + ".");
-  }
+  for (std::size_t o = 0; o < result.outputs.size(); ++o)
+    answers.push_back(in_words(result.outputs[o], result.options.level) + variance_text(result, o) +
+                      ".");
   return answers;
 }
 
@@ -107,75 +117,58 @@ std::string with_interval(const Estimate& e) {
 
 Section outputs_section(const UncertaintyResult& result) {
   const double tail = (1 - result.options.level) / 2;
-  Section section{
+  NewSection section(
       "Outputs",
       fmt::format(
           "Monte Carlo: {} independent samples, random numbers of seed {}. In brackets the "
           "interval that holds the quantile with 95 % probability, by order statistics; behind +- "
           "the standard error. Nominal: the case as it is. All digits are in outputs.csv.",
-          result.options.samples, result.options.seed),
-      {},
-      {{"output", "unit", "nominal", "mean", "standard deviation", percent(tail) + " quantile",
-        "median", percent(1 - tail) + " quantile"},
-       {}}};
-  for (const UncertainOutput& o : result.outputs) {
-    const Spread& s = o.spread;
-    section.table.rows.push_back({o.output.name, o.output.unit, digits(o.nominal, s.mean_error),
-                                  with_error(s.mean, s.mean_error),
-                                  with_error(s.deviation, s.deviation_error), with_interval(s.low),
-                                  with_interval(s.median), with_interval(s.high)});
-  }
+          result.options.samples, result.options.seed));
+  section.columns("output", "unit", "nominal", "mean", "standard deviation",
+                  percent(tail) + " quantile", "median", percent(1 - tail) + " quantile");
+  for (const auto& [output, nominal, s] : result.outputs)
+    section.row(output.name, output.unit, digits(nominal, s.mean_error),
+                with_error(s.mean, s.mean_error), with_error(s.deviation, s.deviation_error),
+                with_interval(s.low), with_interval(s.median), with_interval(s.high));
   return section;
 }
 
 Section first_order_section(const UncertaintyResult& result) {
-  Section section{
+  NewSection section(
       "First order beside it",
       "Law of propagation of uncertainty (JCGM 100, 5.1 and 5.2): value at the parameters' means, "
       "combined standard uncertainty from derivatives there and covariances. Where it differs from "
       "Monte Carlo by more than the latter's standard error, the output is not linear over the "
-      "range of uncertainty; Monte Carlo is then valid.",
-      result.sampled.infeasible.empty()
-          ? report::Lines{}
-          : report::
-                Lines{{"left-out samples",
-                       "First order takes the stated distributions as a whole, Monte Carlo only "
-                       "the samples that are pumps: the two differ by that too."}},
-      {{"output", "unit", "value at the means", "combined standard uncertainty", "of Monte Carlo",
-        "standard error of that"},
-       {}}};
+      "range of uncertainty; Monte Carlo is then valid.");
+  section.columns("output", "unit", "value at the means", "combined standard uncertainty",
+                  "of Monte Carlo", "standard error of that");
+  if (!result.sampled.infeasible.empty())
+    section.fact("left-out samples",
+                 "First order takes the stated distributions as a whole, Monte Carlo only "
+                 "the samples that are pumps: the two differ by that too.");
   for (std::size_t o = 0; o < result.outputs.size(); ++o) {
-    const UncertainOutput& output = result.outputs[o];
-    section.table.rows.push_back({output.output.name, output.output.unit,
-                                  result.first_order.values[o], result.first_order.deviations[o],
-                                  output.spread.deviation, output.spread.deviation_error});
+    const auto& [output, nominal, spread] = result.outputs[o];
+    section.row(output.name, output.unit, result.first_order.values[o],
+                result.first_order.deviations[o], spread.deviation, spread.deviation_error);
   }
   for (const std::string& reason : result.first_order.reasons)
-    section.facts.emplace_back("no derivative", reason);
+    section.fact("no derivative", reason);
   return section;
 }
 
 Section contributions_section(const UncertaintyResult& result) {
-  Section section{
-      "Contributions of the parameters, to first order",
-      "Derivative by differences over half and a quarter of the standard deviation, "
-      "extrapolated; its error is what the extrapolation changed. Contribution: "
-      "derivative x standard deviation of the parameter.",
-      {},
-      {{"output", "parameter", "derivative", "error of it", "unit of it", "contribution", "unit"},
-       {}}};
-  const std::size_t n = result.variables.size();
-  for (std::size_t o = 0; o < result.outputs.size(); ++o)
-    for (std::size_t i = 0; i < n; ++i) {
-      const Variable& v = result.variables.variables[i];
-      const Output& output = result.outputs[o].output;
-      const double derivative = result.first_order.derivatives[o * n + i];
-      const std::string of = output.unit.empty() ? "1" : output.unit;
-      section.table.rows.push_back(
-          {output.name, v.name(), derivative, result.first_order.derivative_errors[o * n + i],
-           v.unit().empty() ? of : of + "/" + v.unit(),
-           derivative * result.variables.distributions[i].standard_deviation(), output.unit});
-    }
+  NewSection section("Contributions of the parameters, to first order",
+                     "Derivative by differences over half and a quarter of the standard deviation, "
+                     "extrapolated; its error is what the extrapolation changed. Contribution: "
+                     "derivative x standard deviation of the parameter.");
+  section.columns("output", "parameter", "derivative", "error of it", "unit of it", "contribution",
+                  "unit");
+  for_each_pair(result, [&](const Output& output, const Variable& v, std::size_t at) {
+    const std::string of = output.unit.empty() ? "1" : output.unit;
+    section.row(output.name, v.name(), result.first_order.derivatives[at],
+                result.first_order.derivative_errors[at],
+                v.unit().empty() ? of : of + "/" + v.unit(), contribution(result, at), output.unit);
+  });
   return section;
 }
 
@@ -195,43 +188,34 @@ std::string sobol_left_out_text(const UncertaintyResult& result) {
 }
 
 Section sobol_section(const UncertaintyResult& result) {
-  Section section{
+  NewSection section(
       "Sobol indices",
       "Shares of the output's variance: first, by the parameter alone; total, by it together with "
       "others. Martinez' estimator (OpenTURNS), with the interval of 95 % that it has at "
-      "independent points; the points are a Sobol sequence, so that it errs on the safe side.",
-      {{"evaluations", std::to_string(result.sobol.evaluations)},
-       {"base points left out", sobol_left_out_text(result)}},
-      {{"output", "parameter", "first", "from", "to", "total", "from", "to"}, {}}};
-  const std::size_t n = result.variables.size();
-  for (std::size_t o = 0; o < result.outputs.size(); ++o)
-    for (std::size_t i = 0; i < n; ++i) {
-      const Estimate &first = result.sobol.first[o * n + i], &total = result.sobol.total[o * n + i];
-      section.table.rows.push_back({result.outputs[o].output.name,
-                                    result.variables.variables[i].name(), first.value, first.low,
-                                    first.high, total.value, total.low, total.high});
-    }
+      "independent points; the points are a Sobol sequence, so that it errs on the safe side.");
+  section.columns("output", "parameter", "first", "from", "to", "total", "from", "to");
+  section.fact("evaluations", std::to_string(result.sobol.evaluations));
+  section.fact("base points left out", sobol_left_out_text(result));
+  for_each_pair(result, [&](const Output& output, const Variable& variable, std::size_t at) {
+    const Estimate &first = result.sobol.first[at], &total = result.sobol.total[at];
+    section.row(output.name, variable.name(), first.value, first.low, first.high, total.value,
+                total.low, total.high);
+  });
   return section;
 }
 
 report::Figure contributions_figure(const UncertaintyResult& result, std::size_t o) {
-  const std::size_t n = result.variables.size();
   const Output& output = result.outputs[o].output;
-  std::vector<std::pair<double, std::size_t>> sizes;
-  const auto of = [&](std::size_t i) {
-    return result.first_order.derivatives[o * n + i] *
-           result.variables.distributions[i].standard_deviation();
-  };
-  for (std::size_t i = 0; i < n; ++i)
-    if (is_computed(of(i))) sizes.emplace_back(-std::abs(of(i)), i);
-  std::sort(sizes.begin(), sizes.end());
+  const report::Values parts = contributions(result, o);
+  const auto size = [&](std::size_t i) { return std::abs(parts[i]); };
+  const auto order = report::by_size(parts.size(), size);
   report::BarsFigure bars{{"contribution to " + output.name, output.unit}, {}};
   constexpr double kDrawn = 1e-6;  // of the largest: the rest may be round-off
-  for (const auto& [size, i] : sizes)
-    if (size < kDrawn * sizes.front().first)
-      bars.bars.push_back({result.variables.variables[i].name(), size, -size,
+  for (const std::size_t i : order)
+    if (size(i) > kDrawn * size(order.front()))
+      bars.bars.push_back({result.variables.variables[i].name(), -size(i), size(i),
                            result.variables.distributions[i].text() + ": " +
-                               fmt::format("{:+.3g} {}", of(i), output.unit)});
+                               fmt::format("{:+.3g} {}", parts[i], output.unit)});
   return {fmt::format("contributions_{}", o + 1),
           output.name + ": contributions to its uncertainty", "", bars,
           "One standard deviation of each parameter, to first order; longest first."};
@@ -253,93 +237,88 @@ report::Figure sobol_figure(const UncertaintyResult& result, std::size_t o) {
           bars, "With intervals of 95 %."};
 }
 
+Section reasons_section(const UncertaintyResult& result) {
+  std::map<std::string, long> counts;
+  for (const auto& [index, reason] : result.sampled.infeasible) ++counts[reason];
+  const std::size_t without = result.sampled.infeasible.size(), all = result.options.samples;
+  NewSection section("Samples that are no pump",
+                     "Left out of all results above: these apply to the feasible pumps.");
+  section.fact("samples", "{} of {}", without, all);
+  section.fact("share, %", "{:.3g}", 100 * static_cast<double>(without) / static_cast<double>(all));
+  section.columns("reason", "samples");
+  constexpr std::size_t kMax = 20;
+  for (const auto& [reason, count] : counts)
+    if (section.table.rows.size() < kMax) section.row(reason, count);
+  if (counts.size() > kMax)
+    section.fact("reasons not listed", std::to_string(counts.size() - kMax));
+  return section;
+}
+
+Section kept_section(const UncertaintyResult& result) {
+  NewSection section(
+      "Parameters of the remaining samples",
+      "Leaving samples out changes the distributions of the parameters: where mean or "
+      "standard deviation of the samples that are left differ from the stated ones by more "
+      "than their standard errors, mean, standard deviation and quantiles of the outputs "
+      "are those of these narrower distributions, not of the stated ones.");
+  section.columns("parameter", "unit", "stated mean", "mean", "standard error of it",
+                  "stated standard deviation", "standard deviation", "standard error of it");
+  for (std::size_t i = 0; i < result.kept_parameters.size(); ++i) {
+    const Spread& s = result.kept_parameters[i];
+    const Distribution& d = result.variables.distributions[i];
+    section.row(result.variables.variables[i].name(), result.variables.variables[i].unit(),
+                d.mean(), s.mean, s.mean_error, d.standard_deviation(), s.deviation,
+                s.deviation_error);
+  }
+  return section;
+}
+
 }  // namespace
 
 Section parameters_section(const UncertaintyResult& result) {
-  Section section{"What is not known",
-                  "",
-                  {},
-                  {{"parameter", "unit", "in the case", "distribution", "mean",
-                    "standard deviation", "over the mean, %"},
-                   {}}};
+  NewSection section("What is not known");
+  section.columns("parameter", "unit", "in the case", "distribution", "mean", "standard deviation",
+                  "over the mean, %");
   const UncertainVariables& all = result.variables;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Distribution& d = all.distributions[i];
     const double mean = d.mean(), deviation = d.standard_deviation();
-    section.table.rows.push_back(
-        {all.variables[i].name(), all.variables[i].unit(), all.variables[i].value(result.the_case),
-         d.text(), mean, deviation, mean != 0 ? Cell(100 * deviation / std::abs(mean)) : Cell()});
+    section.row(all.variables[i].name(), all.variables[i].unit(),
+                all.variables[i].value(result.the_case), d.text(), mean, deviation,
+                mean != 0 ? 100 * deviation / std::abs(mean) : not_computed());
   }
   for (const UncertaintyData::Correlation& c : result.the_case.uncertainty.correlations)
-    section.facts.emplace_back("correlation of " + c.first + " and " + c.second,
-                               number_text(c.coefficient));
+    section.fact("correlation of " + c.first + " and " + c.second, number_text(c.coefficient));
   return section;
 }
 
 void add_left_out(report::Document& document, const UncertaintyResult& result) {
   if (result.sampled.infeasible.empty()) return;
   report::append(document.warnings, report::Warning{"Samples left out", left_out_text(result)});
-  std::map<std::string, long> counts;
-  for (const auto& [index, reason] : result.sampled.infeasible) ++counts[reason];
-  const auto without = static_cast<double>(result.sampled.infeasible.size());
-  Section reasons{
-      "Samples that are no pump",
-      "Left out of all results above: these apply to the feasible pumps.",
-      {{"samples",
-        fmt::format("{} of {}", result.sampled.infeasible.size(), result.options.samples)},
-       {"share, %",
-        fmt::format("{:.3g}", 100 * without / static_cast<double>(result.options.samples))}},
-      {{"reason", "samples"}, {}}};
-  constexpr std::size_t kMax = 20;
-  for (const auto& [reason, count] : counts)
-    if (reasons.table.rows.size() < kMax) reasons.table.rows.push_back({reason, count});
-  if (counts.size() > kMax)
-    reasons.facts.emplace_back("reasons not listed", std::to_string(counts.size() - kMax));
-  report::append(document.runs, std::move(reasons));
-
-  Section kept{
-      "Parameters of the remaining samples",
-      "Leaving samples out changes the distributions of the parameters: where mean or "
-      "standard deviation of the samples that are left differ from the stated ones by more "
-      "than their standard errors, mean, standard deviation and quantiles of the outputs "
-      "are those of these narrower distributions, not of the stated ones.",
-      {},
-      {{"parameter", "unit", "stated mean", "mean", "standard error of it",
-        "stated standard deviation", "standard deviation", "standard error of it"},
-       {}}};
-  for (std::size_t i = 0; i < result.kept_parameters.size(); ++i) {
-    const Spread& s = result.kept_parameters[i];
-    const Distribution& d = result.variables.distributions[i];
-    kept.table.rows.push_back({result.variables.variables[i].name(),
-                               result.variables.variables[i].unit(), d.mean(), s.mean, s.mean_error,
-                               d.standard_deviation(), s.deviation, s.deviation_error});
-  }
-  document.runs->push_back(std::move(kept));
+  report::append(document.runs, reasons_section(result));
+  report::append(document.runs, kept_section(result));
 }
 
 Section bands_section(const UncertaintyResult& result) {
-  const double level = result.options.level;
-  Section section{
+  NewSection section(
       "Bands on reactions",
       fmt::format("Pointwise quantiles of {} samples: at each angle {} of the pumps are inside. "
                   "Fewer are inside throughout the turn: the table gives this share. An edge is "
                   "known within its interval of 95 %, by order statistics.",
-                  result.options.samples - result.sampled.infeasible.size(), percent(level)),
-      {},
-      {{"channel", "unit", "peak of the vector", "largest half width", "of peak, %",
-        "largest half interval of an edge", "of peak, %", "within throughout, %"},
-       {}}};
+                  result.options.samples - result.sampled.infeasible.size(),
+                  percent(result.options.level)));
+  section.columns("channel", "unit", "peak of the vector", "largest half width", "of peak, %",
+                  "largest half interval of an edge", "of peak, %", "within throughout, %");
   for (const CurveBand& b : result.bands) {
     const auto of_peak = [&](double value) {
-      return b.peak > 0 ? Cell(100 * value / b.peak) : Cell();
+      return b.peak > 0 ? 100 * value / b.peak : not_computed();
     };
-    section.table.rows.push_back({b.channel.name, b.channel.unit, b.peak, b.widest,
-                                  of_peak(b.widest), b.edge_error, of_peak(b.edge_error),
-                                  100 * b.throughout});
+    section.row(b.channel.name, b.channel.unit, b.peak, b.widest, of_peak(b.widest), b.edge_error,
+                of_peak(b.edge_error), 100 * b.throughout);
   }
   if (result.theta_deg.size() < result.angles)
-    section.facts.emplace_back("angles", fmt::format("{} of the case's {}, to fit into memory",
-                                                     result.theta_deg.size(), result.angles));
+    section.fact("angles", "{} of the case's {}, to fit into memory", result.theta_deg.size(),
+                 result.angles);
   return section;
 }
 
@@ -368,28 +347,29 @@ report::Document uncertainty_document(const UncertaintyResult& result, const rep
                                       const study::CaseDescription& description) {
   report::Document document =
       study::case_document(description, result.the_case.name + ": uncertain parameters", program);
-  document.verdict = report::Verdict{std::nullopt, headline(result), "Uncertainty"};
-  document.verdict->answers = answers_of(result);
+  document.verdict = {.agrees = std::nullopt,
+                      .headline = headline(result),
+                      .word = "Uncertainty",
+                      .answers = answers_of(result)};
   document.meaning = "Effect of the stated distributions of parameters on the results of the " +
                      study::to_string(result.options.model) +
                      " model. Effects that the model leaves out and parameters without a "
                      "distribution are not included.";
-  document.runs.emplace();
-  document.runs->push_back(parameters_section(result));
+  document.runs = {parameters_section(result)};
   document.figures.emplace();
-  if (!result.outputs.empty()) {
-    document.runs->push_back(outputs_section(result));
-    if (result.options.first_order) {
-      document.runs->push_back(first_order_section(result));
-      document.runs->push_back(contributions_section(result));
-      for (std::size_t o = 0; o < result.outputs.size(); ++o)
-        document.figures->push_back(contributions_figure(result, o));
-    }
-    if (result.options.sobol > 0) {
-      document.runs->push_back(sobol_section(result));
-      for (std::size_t o = 0; o < result.outputs.size(); ++o)
-        document.figures->push_back(sobol_figure(result, o));
-    }
+  const auto add_figures = [&](const auto& figure_of) {
+    for (std::size_t o = 0; o < result.outputs.size(); ++o)
+      document.figures->push_back(figure_of(result, o));
+  };
+  if (!result.outputs.empty()) document.runs->push_back(outputs_section(result));
+  if (!result.outputs.empty() && result.options.first_order) {
+    document.runs->push_back(first_order_section(result));
+    document.runs->push_back(contributions_section(result));
+    add_figures(contributions_figure);
+  }
+  if (!result.outputs.empty() && result.options.sobol > 0) {
+    document.runs->push_back(sobol_section(result));
+    add_figures(sobol_figure);
   }
   if (!result.bands.empty()) {
     document.runs->push_back(bands_section(result));
@@ -403,32 +383,24 @@ std::string uncertainty_text(const UncertaintyResult& result) {
   std::string text = result.the_case.name + "\n";
   for (std::size_t o = 0; o < result.outputs.size(); ++o) {
     text += in_words(result.outputs[o], result.options.level);
-    if (result.options.first_order) {
+    if (result.options.first_order)
       text += fmt::format(", to first order {:.3g}", result.first_order.deviations[o]);
-      if (const std::string shares = largest_shares(result, o); !shares.empty())
-        text += "; of its variance " + shares;
-    }
-    text += "\n";
+    text += variance_text(result, o) + "\n";
   }
-  const std::size_t n = result.variables.size();
   if (result.options.sobol > 0)
-    for (std::size_t o = 0; o < result.outputs.size(); ++o)
-      for (std::size_t i = 0; i < n; ++i) {
-        const Estimate &first = result.sobol.first[o * n + i],
-                       &total = result.sobol.total[o * n + i];
-        text += result.outputs[o].output.name + ": " + result.variables.variables[i].name() + ": ";
-        text += is_computed(first.value)
-                    ? "first " + share_text(first) + ", total " + share_text(total) + "\n"
-                    : "no indices, the output does not vary\n";
-      }
-  const CurveBand* widest = nullptr;
-  for (const CurveBand& b : result.bands)
-    if (b.peak > 0 && (widest == nullptr || b.widest / b.peak > widest->widest / widest->peak))
-      widest = &b;
-  if (widest != nullptr)
+    for_each_pair(result, [&](const Output& output, const Variable& variable, std::size_t at) {
+      const Estimate& first = result.sobol.first[at];
+      text += output.name + ": " + variable.name() + ": ";
+      text += is_computed(first.value) ? "first " + share_text(first) + ", total " +
+                                             share_text(result.sobol.total[at]) + "\n"
+                                       : "no indices, the output does not vary\n";
+    });
+  const auto of_peak = [](const CurveBand& b) {
+    return b.peak > 0 ? b.widest / b.peak : not_computed();
+  };
+  if (const CurveBand* widest = report::largest_of(result.bands, of_peak))
     text += fmt::format("widest band: {}, +-{:.3g} {}, {} of peak\n", widest->channel.name,
-                        widest->widest, widest->channel.unit,
-                        percent_text(widest->widest / widest->peak));
+                        widest->widest, widest->channel.unit, percent_text(of_peak(*widest)));
   if (!result.sampled.infeasible.empty())
     text += left_out_text(result) +
             "; the first reason: " + result.sampled.infeasible.front().second + "\n";
