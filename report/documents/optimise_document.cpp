@@ -1,20 +1,14 @@
 #include "bentaxis/designs/optimise_document.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
 #include "bentaxis/files/case_writer.h"
-#include "bentaxis/pump/number.h"
-#include "bentaxis/pump/text.h"
 #include "document_parts.h"
 #include "sweep_sections.h"
 #include "sweep_view.h"
 
 namespace bentaxis::designs {
 namespace {
+
+using report::each_of;
 
 // What is so near to its end is at it: of the range of a parameter, of the scale of a constraint.
 constexpr double kAtEnd = 1e-3;
@@ -37,6 +31,23 @@ std::string against_case(const Optimisation& found, std::size_t design, std::siz
   return fmt::format("{} (the case: {}{})", with_unit(now, o), with_unit(own, o), change);
 }
 
+// Name and unit of an output.
+std::string heading(const Optimisation& found, std::size_t output) {
+  const Output& o = found.plan.designs.outputs[output];
+  return o.name + (o.unit.empty() ? "" : ", " + o.unit);
+}
+
+// The lowest and the highest value that a parameter may have.
+std::pair<double, double> ends_of(const Varied& varied) {
+  if (!varied.levels.empty()) {
+    const auto [least, most] = std::ranges::minmax(varied.levels);
+    return {least, most};
+  }
+  const double low = varied.distribution.numbers[0], high = varied.distribution.numbers[1];
+  if (varied.variable.discrete()) return {std::ceil(low), std::floor(high)};
+  return {low, high};
+}
+
 // Constraints that a design lies on, and parameters at an end of their range.
 std::vector<std::string> bindings(const Optimisation& found, std::size_t design) {
   const SweepPlan& plan = found.plan.designs;
@@ -52,19 +63,7 @@ std::vector<std::string> bindings(const Optimisation& found, std::size_t design)
   for (std::size_t k = 0; k < plan.varied.size(); ++k) {
     const Varied& varied = plan.varied[k];
     if (!varied.variable.words().empty()) continue;
-    double low = 0, high = 0;
-    if (varied.levels.empty()) {
-      low = varied.distribution.numbers[0];
-      high = varied.distribution.numbers[1];
-      if (varied.variable.discrete()) {
-        low = std::ceil(low);
-        high = std::floor(high);
-      }
-    } else {
-      const auto [least, most] = std::minmax_element(varied.levels.begin(), varied.levels.end());
-      low = *least;
-      high = *most;
-    }
+    const auto [low, high] = ends_of(varied);
     const double value = found.designs.values[design * plan.varied.size() + k];
     for (const auto& [end, word] : {std::pair{low, "lower"}, {high, "upper"}})
       if (std::abs(value - end) <= kAtEnd * (high - low))
@@ -156,8 +155,7 @@ std::string searches_text(const Optimisation& found) {
         "the best values of the {} searches differ by {:.2g} %{}", count, 100 * apart,
         apart > kDisagreeBy ? fmt::format(", so the best design is not settled: {}", hint) : "");
   }
-  const double least =
-      *std::min_element(found.shares_of_front.begin(), found.shares_of_front.end());
+  const double least = *std::ranges::min_element(found.shares_of_front);
   if (least >= kDisagree)
     return fmt::format("each of {} searches finds at least {:.3g} % of the front alone", count,
                        100 * least);
@@ -169,40 +167,23 @@ std::string searches_text(const Optimisation& found) {
 
 // Random and grid search at as many evaluations, by the same evaluator.
 report::Section comparison_section(const Optimisation& found) {
-  report::Section section;
-  section.title = "Against random and grid search";
-  section.text =
+  report::NewSection section(
+      "Against random and grid search",
       "The same evaluations spent otherwise: designs drawn at random, and a grid with as many "
       "values of each parameter as they allow. Volume: what the front dominates below the worst "
       "point of the front found, of that of the front found; a search may be lucky above 100 %. "
-      "Time: of the evaluations; the search itself takes more.";
-  section.table.columns = {"search", "designs", "keep all constraints"};
+      "Time: of the evaluations; the search itself takes more.");
   const auto sought = objectives(found);
-  for (const std::size_t k : sought) {
-    const Output& o = found.plan.designs.outputs[k];
-    section.table.columns.push_back("best " + o.name + (o.unit.empty() ? "" : ", " + o.unit));
-  }
-  section.table.columns.emplace_back("volume, %");
-  section.table.columns.emplace_back("time, s");
-  const auto number = [](double value) {
-    return is_computed(value) ? report::Cell(value) : report::Cell();
-  };
-  std::vector<report::Cell> own = {"optimise", static_cast<long>(found.evaluated()),
-                                   static_cast<long>(found.feasible())};
-  for (const std::size_t k : sought)
-    own.push_back(number(best_value(found, k, 0, found.evaluated())));
-  own.push_back(found.shares_of_front.empty() ? report::Cell() : report::Cell(100.0));
-  own.emplace_back(found.evaluation_seconds);
-  section.table.rows.push_back(std::move(own));
-  for (const SearchComparison& other : found.comparisons) {
-    std::vector<report::Cell> row = {other.name, static_cast<long>(other.evaluations),
-                                     static_cast<long>(other.feasible)};
-    for (const double best : other.best) row.push_back(number(best));
-    row.push_back(is_computed(other.share_of_front) ? report::Cell(100 * other.share_of_front)
-                                                    : report::Cell());
-    row.emplace_back(other.seconds);
-    section.table.rows.push_back(std::move(row));
-  }
+  section.columns("search", "designs", "keep all constraints",
+                  each_of(sought, [&](std::size_t k) { return "best " + heading(found, k); }),
+                  "volume, %", "time, s");
+  section.row(
+      "optimise", found.evaluated(), found.feasible(),
+      each_of(sought, [&](std::size_t k) { return best_value(found, k, 0, found.evaluated()); }),
+      found.shares_of_front.empty() ? not_computed() : 100, found.evaluation_seconds);
+  for (const SearchComparison& other : found.comparisons)
+    section.row(other.name, other.evaluations, other.feasible, other.best,
+                100 * other.share_of_front, other.seconds);
   return section;
 }
 
@@ -226,86 +207,115 @@ std::string comparison_text(const Optimisation& found) {
 
 report::Section chosen_section(const Optimisation& found) {
   const SweepPlan& plan = found.plan.designs;
-  report::Section section;
-  section.title = "Chosen designs";
-  section.text =
+  report::NewSection section(
+      "Chosen designs",
       "The best design for each objective, and of several objectives the one nearest to all of "
       "these at once, each objective over its range on the front (\"balanced\"). Each is a case "
-      "file of its own.";
-  section.table.columns = {"", "chosen for", "design"};
-  for (const Varied& varied : plan.varied) section.table.columns.push_back(varied.variable.name());
-  for (const Output& o : plan.outputs)
-    section.table.columns.push_back(o.name + (o.unit.empty() ? "" : ", " + o.unit));
-  section.table.columns.emplace_back("at its limit");
-  section.table.columns.emplace_back("validity");
-  std::vector<report::Cell> own = {"the case", "", ""};
-  for (const Varied& varied : plan.varied)
-    own.emplace_back(value_text(varied.variable, varied.variable.value(found.designs.base)));
-  for (const double value : found.own.values) own.emplace_back(value);
-  own.emplace_back(found.own.reason);
-  own.emplace_back("");
-  section.table.rows.push_back(std::move(own));
+      "file of its own.");
+  std::vector<std::string> outputs;
+  for (std::size_t k = 0; k < plan.outputs.size(); ++k) outputs.push_back(heading(found, k));
+  section.columns("", "chosen for", "design",
+                  each_of(plan.varied, [](const Varied& v) { return v.variable.name(); }), outputs,
+                  "at its limit", "validity");
+  section.row("the case", "", "",
+              each_of(plan.varied,
+                      [&](const Varied& v) {
+                        return value_text(v.variable, v.variable.value(found.designs.base));
+                      }),
+              found.own.values, found.own.reason, "");
   for (std::size_t i = 0; i < found.chosen.size(); ++i) {
     const auto& [why, design] = found.chosen[i];
-    std::vector<report::Cell> row = {fmt::format("chosen_{}.toml", i + 1), why,
-                                     static_cast<long>(design)};
+    report::Row values;
     for (std::size_t k = 0; k < plan.varied.size(); ++k)
-      row.emplace_back(value_text(plan.varied[k].variable,
-                                  found.designs.values[design * plan.varied.size() + k]));
+      values.emplace_back(value_text(plan.varied[k].variable,
+                                     found.designs.values[design * plan.varied.size() + k]));
     for (std::size_t k = 0; k < plan.outputs.size(); ++k)
-      row.emplace_back(measured(found, design, k));
-    row.emplace_back(fmt::format("{}", fmt::join(bindings(found, design), "; ")));
-    row.emplace_back(i >= found.validity.size()  ? ""
-                     : found.validity[i].valid() ? "valid over the whole turn"
-                                                 : found.validity[i].text());
-    section.table.rows.push_back(std::move(row));
+      values.emplace_back(measured(found, design, k));
+    section.row(fmt::format("chosen_{}.toml", i + 1), why, design, values,
+                joined(bindings(found, design), "; "),
+                i >= found.validity.size()  ? ""
+                : found.validity[i].valid() ? "valid over the whole turn"
+                                            : found.validity[i].text());
   }
   return section;
 }
 
+// What one of the searches found.
+std::string search_result(const Optimisation& found, std::size_t search) {
+  const auto sought = objectives(found);
+  if (sought.size() == 1 && is_computed(best_of_search(found, search)))
+    return "best: " +
+           with_unit(best_of_search(found, search), found.plan.designs.outputs[sought.front()]);
+  if (search < found.shares_of_front.size())
+    return fmt::format("{:.4g} % of the volume of the front", 100 * found.shares_of_front[search]);
+  return found.chosen.empty() ? "no feasible design" : "";
+}
+
+std::string refinement_text(const Optimisation& found, const Refinement& r) {
+  const std::size_t output = objectives(found)[r.objective];
+  const auto value = [&](double minimised) {
+    return with_unit(-found.plan.designs.direction[output] * minimised,
+                     found.plan.designs.outputs[output]);
+  };
+  if (!is_computed(r.after)) return "no feasible design; " + r.message;
+  if (!is_computed(r.before)) return "to " + value(r.after) + "; " + r.message;
+  return fmt::format("from {} to {}, better by {:.2g} %; {} derivatives; {}", value(r.before),
+                     value(r.after), 100 * improvement(r.before, r.after),
+                     r.exact ? "exact" : "difference", r.message);
+}
+
 report::Section sureness_section(const Optimisation& found) {
   const SearchOptions& options = found.plan.search;
-  report::Section section;
-  section.title = "How sure this is";
-  section.text =
+  const auto sought = objectives(found);
+  report::NewSection section(
+      "How sure this is",
       "Searches from different points that end at the same front, and gradients that find no "
       "better design nearby, indicate convergence; no search proves that there is no better "
-      "design.";
-  section.facts = {
-      {"search", search_libraries() + (objectives(found).size() > 1
-                                           ? "; NSGA-II, then SLSQP from the best designs"
-                                           : "; GACO, then SLSQP from the best designs")},
-      {"population", fmt::format("{}", options.population)},
-      {"generations", fmt::format("{}", options.generations)},
-      {"seed", fmt::format("{}", options.seed)},
-      {"time", fmt::format("{:.3g} s, {:.3g} s of it evaluations ({:.3g} designs a second)",
-                           found.designs.seconds, found.evaluation_seconds,
-                           static_cast<double>(found.evaluated()) / found.evaluation_seconds)}};
-  section.table.columns = {"stage", "designs", "result"};
+      "design.");
+  section.fact("search", search_libraries() + (sought.size() > 1
+                                                   ? "; NSGA-II, then SLSQP from the best designs"
+                                                   : "; GACO, then SLSQP from the best designs"));
+  section.fact("population", "{}", options.population);
+  section.fact("generations", "{}", options.generations);
+  section.fact("seed", "{}", options.seed);
+  section.fact("time", "{:.3g} s, {:.3g} s of it evaluations ({:.3g} designs a second)",
+               found.designs.seconds, found.evaluation_seconds,
+               static_cast<double>(found.evaluated()) / found.evaluation_seconds);
+  section.columns("stage", "designs", "result");
   for (std::size_t i = 0; i < options.restarts; ++i)
-    section.table.rows.push_back(
-        {fmt::format("search {}", i + 1), static_cast<long>(found.search.evaluations[i]),
-         objectives(found).size() == 1 && is_computed(best_of_search(found, i))
-             ? "best: " + with_unit(best_of_search(found, i),
-                                    found.plan.designs.outputs[objectives(found).front()])
-         : i < found.shares_of_front.size()
-             ? fmt::format("{:.4g} % of the volume of the front", 100 * found.shares_of_front[i])
-         : found.chosen.empty() ? "no feasible design"
-                                : ""});
-  const auto sought = objectives(found);
-  for (const Refinement& r : found.search.refinements) {
-    const Output& o = found.plan.designs.outputs[sought[r.objective]];
-    const double sign = -found.plan.designs.direction[sought[r.objective]];
-    section.table.rows.push_back(
-        {"gradients, " + o.name, static_cast<long>(r.evaluations),
-         !is_computed(r.after) ? "no feasible design; " + r.message
-         : !is_computed(r.before)
-             ? "to " + with_unit(sign * r.after, o) + "; " + r.message
-             : fmt::format("from {} to {}, better by {:.2g} %; {} derivatives; {}",
-                           with_unit(sign * r.before, o), with_unit(sign * r.after, o),
-                           100 * improvement(r.before, r.after), r.exact ? "exact" : "difference",
-                           r.message)});
+    section.row(fmt::format("search {}", i + 1), found.search.evaluations[i],
+                search_result(found, i));
+  for (const Refinement& r : found.search.refinements)
+    section.row("gradients, " + found.plan.designs.outputs[sought[r.objective]].name, r.evaluations,
+                refinement_text(found, r));
+  return section;
+}
+
+// What was varied, with the rules of the search.
+report::Section varied_section(const Optimisation& found, const SweepView& view) {
+  const SweepPlan& plan = found.plan.designs;
+  report::Section section = plan_section(found.designs, view);
+  for (std::size_t k = 0; k < plan.varied.size(); ++k) {
+    const Varied& one = plan.varied[k];
+    if (one.levels.empty() && !one.variable.discrete())
+      section.table.rows[k][2] =
+          fmt::format("{} to {}", one.distribution.numbers[0], one.distribution.numbers[1]);
   }
+  section.facts = {{"model", study::to_string(plan.model)}};
+  if (found.plan.robust())
+    section.facts.emplace_back(
+        "quantiles", fmt::format("of {} samples of [uncertainty] for each design, the same random "
+                                 "numbers for all designs",
+                                 found.plan.samples));
+  for (const Constraint& c : found.plan.constraints)
+    section.facts.emplace_back("constraint", found.plan.text(c));
+  if (found.plan.conditions.file.empty()) return section;
+  section.facts.emplace_back("operating points",
+                             fmt::format("{} of {}", found.plan.conditions.rows.size(),
+                                         found.plan.conditions.file.filename().string()));
+  section.text =
+      "Outputs are means over the operating points, weighted by their shares of the time; every "
+      "constraint holds at each of them.";
   return section;
 }
 
@@ -397,44 +407,18 @@ report::Document optimise_document(const Optimisation& found, const report::Line
   const SweepView view(found.designs);
   report::Document document =
       study::case_document(description, found.designs.base.name + ": the best designs", program);
-  document.verdict = report::Verdict{std::nullopt, headline(found)};
-  document.verdict->word = "Optimised";
-  if (found.chosen.empty()) {
-    document.verdict->agrees = false;
-    document.verdict->word = "No design";
-  }
-  document.verdict->answers = optimise_answers(found);
-  document.verdict->not_valid = not_valid_designs(found.validity, "chosen");
+  const bool none = found.chosen.empty();
+  document.verdict = {.agrees = none ? std::optional(false) : std::nullopt,
+                      .headline = headline(found),
+                      .word = none ? "No design" : "Optimised",
+                      .not_valid = not_valid_designs(found.validity, "chosen"),
+                      .answers = optimise_answers(found)};
   document.meaning =
       "Designs by one model, the best that a search found. Nothing was compared: run compare on a "
       "chosen design before it is built.";
-  document.runs.emplace();
-  document.runs->push_back(chosen_section(found));
-  if (!found.chosen.empty()) document.runs->push_back(best_section(view));
-  report::Section varied = plan_section(found.designs, view);
-  for (std::size_t k = 0; k < found.plan.designs.varied.size(); ++k) {
-    const Varied& one = found.plan.designs.varied[k];
-    if (one.levels.empty() && !one.variable.discrete())
-      varied.table.rows[k][2] =
-          fmt::format("{} to {}", one.distribution.numbers[0], one.distribution.numbers[1]);
-  }
-  varied.facts = {{"model", study::to_string(found.plan.designs.model)}};
-  if (found.plan.robust())
-    varied.facts.emplace_back(
-        "quantiles", fmt::format("of {} samples of [uncertainty] for each design, the same random "
-                                 "numbers for all designs",
-                                 found.plan.samples));
-  for (const Constraint& c : found.plan.constraints)
-    varied.facts.emplace_back("constraint", found.plan.text(c));
-  if (!found.plan.conditions.file.empty()) {
-    varied.facts.emplace_back("operating points",
-                              fmt::format("{} of {}", found.plan.conditions.rows.size(),
-                                          found.plan.conditions.file.filename().string()));
-    varied.text =
-        "Outputs are means over the operating points, weighted by their shares of the time; every "
-        "constraint holds at each of them.";
-  }
-  document.runs->push_back(std::move(varied));
+  document.runs = {chosen_section(found)};
+  if (!none) document.runs->push_back(best_section(view));
+  document.runs->push_back(varied_section(found, view));
   document.runs->push_back(outputs_section(view));
   document.runs->push_back(sureness_section(found));
   if (!found.comparisons.empty()) document.runs->push_back(comparison_section(found));
