@@ -1,26 +1,18 @@
 #include "bentaxis/designs/sweep_document.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <map>
-#include <optional>
 
 #include "bentaxis/designs/independence.h"
-#include "bentaxis/pump/lists.h"
-#include "bentaxis/pump/number.h"
-#include "bentaxis/pump/text.h"
 #include "document_parts.h"
 #include "sweep_sections.h"
 #include "sweep_view.h"
 
 namespace bentaxis::designs {
+namespace {
 
 using report::Cell;
+using report::NewSection;
 using report::Section;
-
-namespace {
 
 constexpr std::size_t kAllRows = 60;  // designs of a sweep that is printed whole
 constexpr std::size_t kBestRows = 20;
@@ -46,61 +38,10 @@ std::string values_text(const Varied& varied) {
   return joined(levels, ", ", [&](double level) { return value_text(variable, level); });
 }
 
-}  // namespace
-
-Section plan_section(const SweepResult& result, const SweepView& view) {
-  const SweepPlan& plan = result.plan;
-  Section section{
-      "What was varied", "", {}, {{"parameter", "meaning", "values", "in the case"}, {}}};
-  section.facts = {{"designs", fmt::format("{}", plan.size())},
-                   {"sampling", to_string(plan.sampling)}};
-  if (plan.sampling != Sampling::grid)
-    section.facts.emplace_back("seed", fmt::format("{}", plan.seed));
-  section.facts.emplace_back("model", study::to_string(plan.model));
-  if (result.every > 1)
-    section.text = fmt::format(
-        "Figures and tables below are of every {}th design, {} of {}; the result files have all.",
-        result.every, view.designs(), plan.size());
-  for (const Varied& varied : plan.varied) {
-    const Variable& variable = varied.variable;
-    const std::string unit = variable.unit().empty() ? "" : " (" + variable.unit() + ")";
-    section.table.rows.push_back({variable.name(), variable.meaning() + unit, values_text(varied),
-                                  value_text(variable, variable.value(result.base))});
-  }
-  return section;
+// "12: pump.tilt_deg 40", of a design by its number in the view.
+std::string named(const SweepView& view, std::size_t design) {
+  return fmt::format("{}: {}", view.number(design), view.text(design));
 }
-
-Section outputs_section(const SweepView& view) {
-  Section section{
-      "Outputs",
-      "",
-      {},
-      {{"output", "unit", "meaning", "sought", "lowest", "of design", "highest", "of design"}, {}}};
-  for (std::size_t k = 0; k < view.outputs(); ++k) {
-    std::size_t lowest = view.designs(), highest = view.designs();
-    for (std::size_t i = 0; i < view.designs(); ++i) {
-      const double v = view.result(i, k);
-      if (!is_computed(v)) continue;
-      if (lowest == view.designs() || v < view.result(lowest, k)) lowest = i;
-      if (highest == view.designs() || v > view.result(highest, k)) highest = i;
-    }
-    const Output& output = view.output(k);
-    const int direction = view.direction(k);
-    std::vector<Cell> row = {output.name, output.unit, output.meaning,
-                             direction < 0   ? "smallest"
-                             : direction > 0 ? "largest"
-                                             : ""};
-    for (const std::size_t design : {lowest, highest}) {
-      const bool found = design < view.designs();
-      row.emplace_back(found ? view.result(design, k) : not_computed());
-      row.emplace_back(found ? fmt::format("{}: {}", view.number(design), view.text(design)) : "");
-    }
-    section.table.rows.push_back(std::move(row));
-  }
-  return section;
-}
-
-namespace {
 
 // Reasons that differ in their numbers only are one.
 std::string kind_of(const std::string& reason) {
@@ -115,7 +56,173 @@ std::string kind_of(const std::string& reason) {
   return kind;
 }
 
+// Name and unit of an axis.
+std::string heading(const report::Axis& axis) {
+  return axis.unit.empty() ? axis.label : axis.label + ", " + axis.unit;
+}
+
+// Rows of designs: their values and results.
+void put_designs(const SweepView& view, const std::vector<std::size_t>& designs,
+                 NewSection& section) {
+  section.columns("design");
+  for (std::size_t k = 0; k < view.variables(); ++k) section.columns(heading(view.axis(k)));
+  for (std::size_t k = 0; k < view.outputs(); ++k) section.columns(heading(view.output_axis(k)));
+  for (const std::size_t design : designs) {
+    report::Row values;
+    for (std::size_t k = 0; k < view.variables(); ++k) {
+      const double value = view.value(design, k);
+      values.push_back(view.variable(k).words().empty() ? Cell(value)
+                                                        : Cell(view.variable(k).text(value)));
+    }
+    for (std::size_t k = 0; k < view.outputs(); ++k) values.emplace_back(view.result(design, k));
+    section.row(view.number(design), values);
+  }
+}
+
+std::vector<std::size_t> by_output(const SweepView& view, std::vector<std::size_t> designs,
+                                   std::size_t output) {
+  const double sign = view.direction(output);
+  std::erase_if(designs, [&](std::size_t d) { return !is_computed(view.result(d, output)); });
+  std::ranges::stable_sort(designs, [&](std::size_t a, std::size_t b) {
+    return sign * view.result(a, output) > sign * view.result(b, output);
+  });
+  return designs;
+}
+
+Section checks_section(const SweepResult& result) {
+  NewSection section(
+      "Recomputed by " + other_model(result),
+      "Designs chosen by a hash of their numbers. A difference is over the scale of its output, "
+      "the peak of the curve over the turn. A design that both models refuse is not compared.");
+  section.fact("agree", "{} of {}", result.agreeing(), result.compared());
+  section.fact("not compared", "{} of {}", result.checks.size() - result.compared(),
+               result.checks.size());
+  section.fact("tolerance", "{:g} of the scale", result.tolerance);
+  for (const std::string& output : not_independent(result.plan.outputs, result.base))
+    section.fact("not checked", output);
+  section.columns("output", "designs compared", "largest difference over its scale", "of design");
+  for (std::size_t k = 0; k < result.plan.outputs.size(); ++k) {
+    std::size_t compared = 0, where = 0;
+    compare::Difference largest;
+    for (const SweepCheck& check : result.checks) {
+      if (k >= check.scales.size() || check.scales[k] == 0) continue;
+      ++compared;
+      if (largest.keep_larger(check.difference(k))) where = check.design;
+    }
+    section.row(result.plan.outputs[k].name, compared, largest.share(),
+                compared > 0 ? std::optional(where) : std::nullopt);
+  }
+  return section;
+}
+
+Section differing_section(const SweepResult& result) {
+  NewSection section("Designs in which the models differ");
+  section.columns("design", "output", study::to_string(result.plan.model), other_model(result),
+                  "difference over its scale");
+  std::size_t all = 0;
+  const auto add = [&](const auto&... cells) {
+    if (++all <= kMaxDiffering) section.row(cells...);
+  };
+  const auto feasible_or = [](const std::string& reason) {
+    return reason.empty() ? "feasible" : reason;
+  };
+  for (const SweepCheck& check : result.checks) {
+    if (!check.compared() || check.agrees(result.tolerance)) continue;
+    if (check.own_reason.empty() != check.reason.empty()) {
+      add(check.design, "", feasible_or(check.own_reason), feasible_or(check.reason));
+      continue;
+    }
+    for (std::size_t k = 0; k < check.scales.size(); ++k)
+      if (!(check.error(k) <= result.tolerance))
+        add(check.design, result.plan.outputs[k].name, check.own[k], check.values[k],
+            check.error(k));
+  }
+  if (all > kMaxDiffering) section.text = fmt::format("The first {} of {}.", kMaxDiffering, all);
+  return section;
+}
+
+struct ValidityCounts {
+  std::size_t wrong = 0, unknown = 0;
+};
+
+ValidityCounts counts_of(const std::vector<DesignValidity>& designs) {
+  return {report::count_of(designs, [](const auto& v) { return !v.limits.empty(); }),
+          report::count_of(designs, [](const auto& v) { return !v.reason.empty(); })};
+}
+
+// Of a value of an output, for the answers.
+std::string printed(double value) { return fmt::format("{:.5g}", value); }
+
+// "; not valid over 7.5 % of the turn" of a best design.
+std::string validity_suffix(const SweepResult& result, std::size_t design) {
+  for (const DesignValidity& v : result.best)
+    if (v.design == design && !v.valid()) return "; " + v.text();
+  return "";
+}
+
+// Of one output: its best design, or the lowest and the highest.
+std::string answer_of(const SweepResult& result, const SweepView& view, std::size_t k) {
+  if (std::string constant = view.constant_text(k); !constant.empty()) return constant;
+  const Output& output = view.output(k);
+  const auto ends = view.ends(k);
+  if (!ends) return output.name + ": no design has a value.";
+  const auto [lowest, highest] = *ends;
+  const auto value = [&](std::size_t d) {
+    return printed(view.result(d, k)) + unit_after(output.unit);
+  };
+  if (value(lowest) == value(highest) && lowest != highest)
+    return fmt::format("{} is {} in every design, to the digits that are printed.", output.name,
+                       value(lowest));
+  const auto end = [&](const char* word, std::size_t d) {
+    return fmt::format("{} {} (design {}, {})", word, value(d), view.number(d), view.text(d));
+  };
+  const int direction = view.direction(k);
+  if (direction == 0)
+    return output.name + ": " + end("lowest", lowest) + "; " + end("highest", highest) + ".";
+  const std::size_t best = direction < 0 ? lowest : highest;
+  return output.name + ": " + end(direction < 0 ? "best, lowest" : "best, highest", best) +
+         validity_suffix(result, best) + ".";
+}
+
 }  // namespace
+
+Section plan_section(const SweepResult& result, const SweepView& view) {
+  const SweepPlan& plan = result.plan;
+  NewSection section("What was varied");
+  section.columns("parameter", "meaning", "values", "in the case");
+  section.fact("designs", "{}", plan.size());
+  section.fact("sampling", to_string(plan.sampling));
+  if (plan.sampling != Sampling::grid) section.fact("seed", "{}", plan.seed);
+  section.fact("model", study::to_string(plan.model));
+  if (result.every > 1)
+    section.text = fmt::format(
+        "Figures and tables below are of every {}th design, {} of {}; the result files have all.",
+        result.every, view.designs(), plan.size());
+  for (const Varied& varied : plan.varied) {
+    const Variable& variable = varied.variable;
+    const std::string unit = variable.unit().empty() ? "" : " (" + variable.unit() + ")";
+    section.row(variable.name(), variable.meaning() + unit, values_text(varied),
+                value_text(variable, variable.value(result.base)));
+  }
+  return section;
+}
+
+Section outputs_section(const SweepView& view) {
+  NewSection section("Outputs");
+  section.columns("output", "unit", "meaning", "sought", "lowest", "of design", "highest",
+                  "of design");
+  for (std::size_t k = 0; k < view.outputs(); ++k) {
+    const Output& output = view.output(k);
+    const int direction = view.direction(k);
+    const char* sought = direction < 0 ? "smallest" : direction > 0 ? "largest" : "";
+    report::Row found = {not_computed(), "", not_computed(), ""};
+    if (const auto ends = view.ends(k))
+      found = report::row_of(view.result(ends->first, k), named(view, ends->first),
+                             view.result(ends->second, k), named(view, ends->second));
+    section.row(output.name, output.unit, output.meaning, sought, found);
+  }
+  return section;
+}
 
 Section infeasible_section(const SweepResult& result, const SweepView& view) {
   struct Group {
@@ -131,172 +238,48 @@ Section infeasible_section(const SweepResult& result, const SweepView& view) {
   }
   std::vector<Group> sorted;
   for (const auto& [kind, group] : groups) sorted.push_back(group);
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const Group& a, const Group& b) { return a.designs > b.designs; });
-  Section section{
+  std::ranges::stable_sort(sorted,
+                           [](const Group& a, const Group& b) { return a.designs > b.designs; });
+  NewSection section(
       "Infeasible designs",
       "Reasons why a case file with these values is refused or cannot be computed. Reasons that "
-      "differ in numbers only are counted together; the first is shown.",
-      {{"infeasible", fmt::format("{} of {} designs, {}", result.all_infeasible, result.plan.size(),
-                                  percent(result.all_infeasible, result.plan.size()))}},
-      {{"reason", "designs", "first design"}, {}}};
+      "differ in numbers only are counted together; the first is shown.");
+  section.fact("infeasible", "{} of {} designs, {}", result.all_infeasible, result.plan.size(),
+               percent(result.all_infeasible, result.plan.size()));
+  section.columns("reason", "designs", "first design");
   if (sorted.size() > kMaxReasons) {
-    section.text +=
-        fmt::format(" The {} most frequent of {} are shown.", kMaxReasons, sorted.size());
+    section.say("The {} most frequent of {} are shown.", kMaxReasons, sorted.size());
     sorted.resize(kMaxReasons);
   }
   for (const Group& group : sorted)
-    section.table.rows.push_back(
-        {group.example, static_cast<long>(group.designs),
-         fmt::format("{}: {}", view.number(group.first), view.text(group.first))});
+    section.row(group.example, group.designs, named(view, group.first));
   return section;
 }
-
-namespace {
-
-// Name and unit of an axis.
-std::string heading(const report::Axis& axis) {
-  return axis.unit.empty() ? axis.label : axis.label + ", " + axis.unit;
-}
-
-}  // namespace
-
-// Rows of designs: their values and results.
-void put_designs(const SweepView& view, const std::vector<std::size_t>& designs,
-                 report::Table& table) {
-  table.columns = {"design"};
-  for (std::size_t k = 0; k < view.variables(); ++k) table.columns.push_back(heading(view.axis(k)));
-  for (std::size_t k = 0; k < view.outputs(); ++k)
-    table.columns.push_back(heading(view.output_axis(k)));
-  for (const std::size_t design : designs) {
-    std::vector<Cell> row = {static_cast<long>(view.number(design))};
-    for (std::size_t k = 0; k < view.variables(); ++k) {
-      const double value = view.value(design, k);
-      if (view.variable(k).words().empty())
-        row.emplace_back(value);
-      else
-        row.emplace_back(view.variable(k).text(value));
-    }
-    for (std::size_t k = 0; k < view.outputs(); ++k) row.emplace_back(view.result(design, k));
-    table.rows.push_back(std::move(row));
-  }
-}
-
-namespace {
-
-std::vector<std::size_t> by_output(const SweepView& view, std::vector<std::size_t> designs,
-                                   std::size_t output) {
-  const double sign = view.direction(output);
-  std::erase_if(designs, [&](std::size_t d) { return !is_computed(view.result(d, output)); });
-  std::stable_sort(designs.begin(), designs.end(), [&](std::size_t a, std::size_t b) {
-    return sign * view.result(a, output) > sign * view.result(b, output);
-  });
-  return designs;
-}
-
-}  // namespace
 
 // The front, or where one output alone is sought the best by it.
 Section best_section(const SweepView& view) {
   std::size_t output = 0;
   while (view.direction(output) == 0) ++output;
-  Section section;
-  std::vector<std::size_t> designs;
   if (view.sought() == 1) {
-    designs = by_output(view, thinned(view.designs(), view.designs() + 1), output);
-    section.title = "Best designs";
-    section.text = "By " + view.output(output).name + ".";
+    NewSection section("Best designs", "By " + view.output(output).name + ".");
+    auto designs = by_output(view, thinned(view.designs(), view.designs() + 1), output);
     designs.resize(std::min(designs.size(), kBestRows));
-  } else {
-    const auto& front = view.front();
-    section.title = "Pareto front";
-    section.text =
-        "Pareto front: designs that no other design equals in all outputs sought and exceeds in "
-        "one.";
-    section.facts = {{"on the front", fmt::format("{} designs", front.size())}};
-    for (const std::size_t i : thinned(front.size(), kBestRows)) designs.push_back(front[i]);
-    if (designs.size() < front.size())
-      section.text += fmt::format(" {} of them, evenly chosen, are shown.", designs.size());
-    designs = by_output(view, std::move(designs), output);
+    put_designs(view, designs, section);
+    return section;
   }
-  put_designs(view, designs, section.table);
+  NewSection section(
+      "Pareto front",
+      "Pareto front: designs that no other design equals in all outputs sought and exceeds in "
+      "one.");
+  const auto& front = view.front();
+  section.fact("on the front", "{} designs", front.size());
+  const auto designs =
+      report::each_of(thinned(front.size(), kBestRows), [&](std::size_t i) { return front[i]; });
+  if (designs.size() < front.size())
+    section.say("{} of them, evenly chosen, are shown.", designs.size());
+  put_designs(view, by_output(view, designs, output), section);
   return section;
 }
-
-namespace {
-
-Section checks_section(const SweepResult& result) {
-  Section section{
-      "Recomputed by " + other_model(result),
-      "Designs chosen by a hash of their numbers. A difference is over the scale of its output, "
-      "the peak of the curve over the turn. A design that both models refuse is not compared.",
-      {{"agree", fmt::format("{} of {}", result.agreeing(), result.compared())},
-       {"not compared",
-        fmt::format("{} of {}", result.checks.size() - result.compared(), result.checks.size())},
-       {"tolerance", fmt::format("{:g} of the scale", result.tolerance)}},
-      {{"output", "designs compared", "largest difference over its scale", "of design"}, {}}};
-  for (const std::string& output : not_independent(result.plan.outputs, result.base))
-    section.facts.emplace_back("not checked", output);
-  for (std::size_t k = 0; k < result.plan.outputs.size(); ++k) {
-    long compared = 0;
-    compare::Difference largest;
-    std::size_t where = 0;
-    for (const SweepCheck& check : result.checks) {
-      if (k >= check.scales.size() || check.scales[k] == 0) continue;
-      ++compared;
-      if (largest.keep_larger(check.difference(k))) where = check.design;
-    }
-    section.table.rows.push_back({result.plan.outputs[k].name, compared, largest.share(),
-                                  compared > 0 ? Cell(static_cast<long>(where)) : Cell()});
-  }
-  return section;
-}
-
-Section differing_section(const SweepResult& result) {
-  Section section{"Designs in which the models differ",
-                  "",
-                  {},
-                  {{"design", "output", study::to_string(result.plan.model), other_model(result),
-                    "difference over its scale"},
-                   {}}};
-  std::size_t all = 0;
-  const auto add = [&](std::vector<Cell> row) {
-    if (++all <= kMaxDiffering) section.table.rows.push_back(std::move(row));
-  };
-  for (const SweepCheck& check : result.checks) {
-    if (!check.compared() || check.agrees(result.tolerance)) continue;
-    const long design = static_cast<long>(check.design);
-    if (check.own_reason.empty() != check.reason.empty()) {
-      add({design, "", check.own_reason.empty() ? "feasible" : check.own_reason,
-           check.reason.empty() ? "feasible" : check.reason, Cell()});
-      continue;
-    }
-    for (std::size_t k = 0; k < check.scales.size(); ++k)
-      if (!(check.error(k) <= result.tolerance))
-        add({design, result.plan.outputs[k].name, check.own[k], check.values[k], check.error(k)});
-  }
-  if (all > kMaxDiffering) section.text = fmt::format("The first {} of {}.", kMaxDiffering, all);
-  return section;
-}
-
-}  // namespace
-
-namespace {
-
-struct ValidityCounts {
-  std::size_t wrong = 0, unknown = 0;
-};
-
-ValidityCounts counts_of(const std::vector<DesignValidity>& designs) {
-  ValidityCounts counts;
-  for (const DesignValidity& v : designs) {
-    counts.wrong += !v.limits.empty();
-    counts.unknown += !v.reason.empty();
-  }
-  return counts;
-}
-
-}  // namespace
 
 std::string validity_text(const std::vector<DesignValidity>& designs, const std::string& which) {
   const ValidityCounts counts = counts_of(designs);
@@ -330,9 +313,7 @@ void append_limits(std::vector<std::string>& answers, const std::vector<DesignVa
     return option + (constrains ? " \"" + share + " <= 0\"" : " " + share);
   });
   // What does not hold, of the design that is worst.
-  const auto worst = std::max_element(
-      designs.begin(), designs.end(),
-      [](const DesignValidity& a, const DesignValidity& b) { return a.share < b.share; });
+  const auto worst = std::ranges::max_element(designs, {}, &DesignValidity::share);
   for (const std::string& limit : worst->limits)
     answers.push_back(fmt::format("Design {}: {}", worst->design * every, limit));
   answers.push_back((constrains ? "To have valid designs only: " : "To see it for every design: ") +
@@ -357,64 +338,10 @@ std::string headline(const SweepResult& result) {
   return text;
 }
 
-namespace {
-
-// Of a value of an output, for the answers.
-std::string printed(double value) { return fmt::format("{:.5g}", value); }
-
-// "; not valid over 7.5 % of the turn" of a best design.
-std::string validity_suffix(const SweepResult& result, std::optional<std::size_t> design) {
-  for (const DesignValidity& v : result.best)
-    if (v.design == design && !v.valid()) return "; " + v.text();
-  return "";
-}
-
-}  // namespace
-
 std::vector<std::string> sweep_answers(const SweepResult& result) {
   const SweepView view(result);
   std::vector<std::string> answers;
-  const auto design_text = [&](std::size_t d) {
-    return fmt::format("design {}, {}", view.number(d), view.text(d));
-  };
-  for (std::size_t k = 0; k < view.outputs(); ++k) {
-    if (std::string constant = view.constant_text(k); !constant.empty()) {
-      answers.push_back(std::move(constant));
-      continue;
-    }
-    std::optional<std::size_t> lowest, highest;
-    for (std::size_t d = 0; d < view.designs(); ++d) {
-      const double value = view.result(d, k);
-      if (!is_computed(value)) continue;
-      if (!lowest || value < view.result(*lowest, k)) lowest = d;
-      if (!highest || value > view.result(*highest, k)) highest = d;
-    }
-    const Output& output = view.output(k);
-    if (!lowest) {
-      answers.push_back(output.name + ": no design has a value.");
-      continue;
-    }
-    const auto end = [&](const char* word, std::size_t d) {
-      return fmt::format("{} {}{} ({})", word, printed(view.result(d, k)), unit_after(output.unit),
-                         design_text(d));
-    };
-    const int direction = view.direction(k);
-    if (printed(view.result(*lowest, k)) == printed(view.result(*highest, k)) &&
-        lowest != highest) {
-      answers.push_back(fmt::format("{} is {}{} in every design, to the digits that are printed.",
-                                    output.name, printed(view.result(*lowest, k)),
-                                    unit_after(output.unit)));
-      continue;
-    }
-    answers.push_back(output.name + ": " +
-                      (direction < 0   ? end("best, lowest", *lowest)
-                       : direction > 0 ? end("best, highest", *highest)
-                                       : end("lowest", *lowest) + "; " + end("highest", *highest)) +
-                      validity_suffix(result, direction < 0   ? lowest
-                                              : direction > 0 ? highest
-                                                              : std::nullopt) +
-                      ".");
-  }
+  for (std::size_t k = 0; k < view.outputs(); ++k) answers.push_back(answer_of(result, view, k));
   if (view.sought() > 1)
     answers.push_back(fmt::format(
         "Trade-off: {} designs of {} are not dominated in the {} outputs sought (Pareto front).",
@@ -434,24 +361,21 @@ report::Document sweep_document(const SweepResult& result, const report::Lines& 
   const SweepView view(result);
   report::Document document =
       study::case_document(description, result.base.name + ": a sweep", program);
-  document.verdict = report::Verdict{result.agrees(), headline(result)};
-  document.verdict->answers = sweep_answers(result);
-  document.verdict->not_valid = not_valid_designs(result.best, "best");
-  if (result.checks.empty()) {
-    document.verdict->agrees.reset();
-    document.verdict->word = "Sweep";
-  } else if (result.compared() == 0) {
-    document.verdict->word = "Nothing compared";
-  }
+  const bool checked = !result.checks.empty();
+  document.verdict = {.agrees = checked ? std::optional(result.agrees()) : std::nullopt,
+                      .headline = headline(result),
+                      .word = !checked                 ? "Sweep"
+                              : result.compared() == 0 ? "Nothing compared"
+                                                       : "",
+                      .not_valid = not_valid_designs(result.best, "best"),
+                      .answers = sweep_answers(result)};
   document.meaning =
-      result.checks.empty()
-          ? "Outputs of every design by one model. Nothing was compared: --check SHARE has designs "
-            "recomputed by the other."
-          : "Outputs of every design by one model. Agreement of the other model at the checked "
-            "designs verifies that the equations are solved correctly; it does not validate them.";
-  document.runs.emplace();
-  document.runs->push_back(plan_section(result, view));
-  document.runs->push_back(outputs_section(view));
+      checked ? "Outputs of every design by one model. Agreement of the other model at the checked "
+                "designs verifies that the equations are solved correctly; it does not validate "
+                "them."
+              : "Outputs of every design by one model. Nothing was compared: --check SHARE has "
+                "designs recomputed by the other.";
+  document.runs = {plan_section(result, view), outputs_section(view)};
   if (view.sought() > 0) {
     document.runs->push_back(best_section(view));
     for (const DesignValidity& v : result.best)
@@ -459,11 +383,12 @@ report::Document sweep_document(const SweepResult& result, const report::Lines& 
                                                v.valid() ? "valid over the whole turn" : v.text());
   }
   if (!result.infeasible.empty()) document.runs->push_back(infeasible_section(result, view));
-  if (!result.checks.empty()) document.runs->push_back(checks_section(result));
+  if (checked) document.runs->push_back(checks_section(result));
   if (result.agreeing() < result.compared()) document.runs->push_back(differing_section(result));
   if (view.designs() <= kAllRows) {
-    document.runs->push_back({"All designs", "", {}, {}});
-    put_designs(view, thinned(view.designs(), kAllRows), document.runs->back().table);
+    NewSection all("All designs");
+    put_designs(view, thinned(view.designs(), kAllRows), all);
+    document.runs->push_back(std::move(all));
   }
   document.figures = sweep_figures(view);
   return document;

@@ -1,11 +1,5 @@
 // Maps, slices, parallel axes and pairs of a sweep.
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "bentaxis/pump/lists.h"
-#include "bentaxis/pump/number.h"
+#include "document_parts.h"
 #include "sweep_view.h"
 
 namespace bentaxis::designs {
@@ -24,15 +18,10 @@ bool is_number(const Variable& variable) { return variable.words().empty(); }
 
 // Numbers below `count`, evenly chosen, with the first, the last and `with`.
 std::vector<std::size_t> spread(std::size_t count, std::size_t most, std::size_t with) {
-  std::vector<std::size_t> chosen;
-  if (count <= most) {
-    for (std::size_t i = 0; i < count; ++i) chosen.push_back(i);
-    return chosen;
-  }
+  if (count <= most) return thinned(count, count + 1);
+  std::vector<std::size_t> chosen = {with};
   for (std::size_t i = 0; i + 1 < most; ++i) chosen.push_back(i * (count - 1) / (most - 2));
-  chosen.push_back(with);
-  std::sort(chosen.begin(), chosen.end());
-  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+  sort_once(chosen);
   return chosen;
 }
 
@@ -75,9 +64,7 @@ class Figures {
  private:
   void add(const std::string& id, const std::string& title, auto content,
            const std::string& note = "") {
-    report::Figure figure{id, title, "", std::move(content)};
-    figure.note = note;
-    figures_.push_back(std::move(figure));
+    figures_.push_back({id, title, "", std::move(content), note});
   }
 
   // What the others are while `shown` vary.
@@ -110,9 +97,11 @@ class Figures {
   void map(std::size_t a, std::size_t b, std::size_t k, std::string note) {
     const auto columns = spread(view_.levels(a).size(), kMaxDrawnLevels, view_.home()[a]);
     const auto rows = spread(view_.levels(b).size(), kMaxDrawnLevels, view_.home()[b]);
-    report::MapFigure m{view_.axis(a), view_.axis(b), {}, {}, {}, {}, {}, {}};
-    for (const std::size_t j : columns) m.x_values.push_back(view_.levels(a)[j]);
-    for (const std::size_t i : rows) m.y_values.push_back(view_.levels(b)[i]);
+    const auto levels = [&](std::size_t variable, const std::vector<std::size_t>& drawn) {
+      return report::each_of(drawn, [&](std::size_t i) { return view_.levels(variable)[i]; });
+    };
+    report::MapFigure m{
+        view_.axis(a), view_.axis(b), {}, levels(a, columns), levels(b, rows), {}, {}, {}};
     auto level = view_.home();
     double low = INFINITY, high = -INFINITY;
     bool gaps = false;
@@ -154,11 +143,7 @@ class Figures {
   // Levels may be given in any order; a map has them rising.
   static void ascending(report::MapFigure& m) {
     const auto order_of = [](const Values& values) {
-      std::vector<std::size_t> order;
-      for (std::size_t i = 0; i < values.size(); ++i) order.push_back(i);
-      std::sort(order.begin(), order.end(),
-                [&](std::size_t i, std::size_t j) { return values[i] < values[j]; });
-      return order;
+      return report::by_size(values.size(), [&](std::size_t i) { return -values[i]; });
     };
     const auto arranged = [](const auto& list, const std::vector<std::size_t>& order) {
       auto made = list;
@@ -181,34 +166,24 @@ class Figures {
     for (const std::size_t v : varied_)
       if (is_number(view_.variable(v)))
         for (std::size_t k = 0; k < view_.outputs(); ++k) wanted.emplace_back(v, k);
-    std::size_t made = 0;
-    for (const auto& [v, k] : wanted) {
-      if (made == kMaxSlices) break;
-      slice(v, k,
-            made == 0 ? limit_text(std::min(wanted.size(), kMaxSlices), wanted.size(), "slices")
-                      : "");
-      ++made;
-    }
+    const std::size_t drawn = std::min(wanted.size(), kMaxSlices);
+    for (std::size_t i = 0; i < drawn; ++i)
+      slice(wanted[i].first, wanted[i].second,
+            i == 0 ? limit_text(drawn, wanted.size(), "slices") : "");
   }
 
   void slice(std::size_t v, std::size_t k, const std::string& note) {
-    const auto next = std::find(varied_.begin(), varied_.end(), v) + 1;
+    const auto next = std::ranges::find(varied_, v) + 1;
     const std::size_t family = varied_.size() == 1 ? v : next == varied_.end() ? varied_[0] : *next;
     report::XyFigure xy{view_.axis(v), view_.output_axis(k), {}};
     auto level = view_.home();
     const auto line = [&](const std::string& label) {
       std::vector<std::pair<double, double>> points;
-      for (std::size_t i = 0; i < view_.levels(v).size(); ++i) {
-        level[v] = i;
-        points.emplace_back(view_.levels(v)[i], view_.result(view_.at(level), k));
-      }
-      std::sort(points.begin(), points.end(),
-                [](const auto& a, const auto& b) { return a.first < b.first; });
+      for (level[v] = 0; level[v] < view_.levels(v).size(); ++level[v])
+        points.emplace_back(view_.levels(v)[level[v]], view_.result(view_.at(level), k));
+      std::ranges::sort(points, [](const auto& a, const auto& b) { return a.first < b.first; });
       report::XySeries series{label, {}, {}};
-      for (const auto& [x, y] : points) {
-        series.x.push_back(x);
-        series.y.push_back(y);
-      }
+      for (const auto& [x, y] : points) series.add(x, y);
       xy.series.push_back(std::move(series));
     };
     if (family == v) {
@@ -229,10 +204,8 @@ class Figures {
   // Designs drawn in figures of many of them, and those of the front among these.
   std::vector<std::size_t> chosen() const { return thinned(view_.designs(), kMaxPoints, marked()); }
   std::vector<std::size_t> marked() const {
-    std::vector<std::size_t> list;
-    for (const std::size_t i : thinned(view_.front().size(), kMaxMarked))
-      list.push_back(view_.front()[i]);
-    return list;
+    return report::each_of(thinned(view_.front().size(), kMaxMarked),
+                           [&](std::size_t i) { return view_.front()[i]; });
   }
   std::string chosen_text() const {
     const std::size_t drawn = chosen().size();
@@ -249,7 +222,7 @@ class Figures {
     scatter.series = {{"designs", 0, false, false, {}}, {front_name(), 1, false, false, {}}};
     const auto& front = view_.front();
     for (const std::size_t design : chosen()) {
-      const bool best = std::binary_search(front.begin(), front.end(), design);
+      const bool best = std::ranges::binary_search(front, design);
       scatter.series[best ? 1 : 0].points.push_back(
           {x_of(design), y_of(design),
            fmt::format("design {}: {}", view_.number(design), view_.text(design))});
@@ -298,18 +271,21 @@ class Figures {
     if (all < 3 || view_.designs() < 2) return;
     report::ParallelFigure figure;
     const auto designs = chosen();
-    for (const std::size_t k : varied_) {
-      const report::Axis axis = view_.axis(k);
+    const auto add_column = [&](const report::Axis& axis, auto of_design,
+                                const std::vector<std::string>& words) {
       figure.columns.push_back(
-          {axis.label, axis.unit, view_.values(k, designs), axis.log, view_.variable(k).words()});
-    }
+          {axis.label, axis.unit, report::each_of(designs, of_design), axis.log, words});
+    };
+    for (const std::size_t k : varied_)
+      add_column(
+          view_.axis(k), [&](std::size_t design) { return view_.value(design, k); },
+          view_.variable(k).words());
     std::size_t by = figure.columns.size();
     for (std::size_t k = view_.outputs(); k-- > 0;)
       if (view_.direction(k) != 0) by = figure.columns.size() + k;
-    for (std::size_t k = 0; k < view_.outputs(); ++k) {
-      const report::Axis axis = view_.output_axis(k);
-      figure.columns.push_back({axis.label, axis.unit, view_.results(k, designs), axis.log, {}});
-    }
+    for (std::size_t k = 0; k < view_.outputs(); ++k)
+      add_column(view_.output_axis(k), [&](std::size_t design) { return view_.result(design, k); },
+                 {});
     std::string note = chosen_text();
     if (figure.columns.size() > kMaxColumns) {
       note += limit_text(kMaxColumns, all, "parameters and outputs");
@@ -317,8 +293,8 @@ class Figures {
     }
     figure.colour_by = std::min(by, figure.columns.size() - 1);
     for (const std::size_t design : marked())
-      figure.marked.push_back(static_cast<std::size_t>(
-          std::lower_bound(designs.begin(), designs.end(), design) - designs.begin()));
+      figure.marked.push_back(
+          static_cast<std::size_t>(std::ranges::lower_bound(designs, design) - designs.begin()));
     figure.marked_label = front_name();
     if (figure.marked.size() < view_.front().size())
       figure.marked_label += fmt::format(", {} of {}", figure.marked.size(), view_.front().size());

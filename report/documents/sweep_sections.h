@@ -19,9 +19,6 @@ report::Section outputs_section(const SweepView& view);
 report::Section infeasible_section(const SweepResult& result, const SweepView& view);
 /// The Pareto front, or the best designs where one output alone is sought.
 report::Section best_section(const SweepView& view);
-/// Rows of designs: their values and results.
-void put_designs(const SweepView& view, const std::vector<std::size_t>& designs,
-                 report::Table& table);
 
 /// How many of the designs are valid: "1 of 2 best designs is not valid over the whole turn".
 /// @param which  "best", "chosen"

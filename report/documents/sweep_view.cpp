@@ -1,14 +1,9 @@
 #include "sweep_view.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <iterator>
 
 #include "bentaxis/designs/pareto.h"
-#include "bentaxis/pump/number.h"
-#include "bentaxis/pump/text.h"
+#include "document_parts.h"
 
 namespace bentaxis::designs {
 namespace {
@@ -25,7 +20,7 @@ bool positive(double v) { return v > 0 && std::isfinite(v); }
 
 // Steps are ratios rather than differences.
 bool geometric(const std::vector<double>& levels) {
-  if (levels.size() < 3 || !std::all_of(levels.begin(), levels.end(), positive)) return false;
+  if (levels.size() < 3 || !std::ranges::all_of(levels, positive)) return false;
   const double ratio = levels[1] / levels[0];
   for (std::size_t i = 1; i + 1 < levels.size(); ++i)
     if (std::abs(levels[i + 1] / levels[i] / ratio - 1) > 1e-6) return false;
@@ -39,41 +34,46 @@ SweepView::SweepView(const SweepResult& result) : result_(result), reasons_(resu
   if (!plan().direction.empty()) front_ = pareto_front(result.results, plan().direction);
   for (const Varied& varied : plan().varied) {
     const double own = varied.variable.value(result.base);
-    const auto nearest =
-        std::min_element(varied.levels.begin(), varied.levels.end(),
-                         [&](double a, double b) { return std::abs(a - own) < std::abs(b - own); });
+    const auto nearest = std::ranges::min_element(
+        varied.levels, [&](double a, double b) { return std::abs(a - own) < std::abs(b - own); });
     home_.push_back(static_cast<std::size_t>(nearest - varied.levels.begin()));
   }
 }
 
-std::string SweepView::constant_text(std::size_t output) const {
-  std::optional<double> only;
-  std::size_t count = 0;
+std::optional<std::pair<std::size_t, std::size_t>> SweepView::ends(std::size_t output) const {
+  std::optional<std::pair<std::size_t, std::size_t>> ends;
   for (std::size_t d = 0; d < designs(); ++d) {
-    if (!is_computed(result(d, output))) continue;
-    if (only && result(d, output) != *only) return "";
-    only = result(d, output);
-    ++count;
+    const double value = result(d, output);
+    if (!is_computed(value)) continue;
+    if (!ends) ends = {d, d};
+    if (value < result(ends->first, output)) ends->first = d;
+    if (value > result(ends->second, output)) ends->second = d;
   }
+  return ends;
+}
+
+std::string SweepView::constant_text(std::size_t output) const {
+  const auto ends = this->ends(output);
+  if (!ends || result(ends->first, output) != result(ends->second, output)) return "";
+  std::size_t count = 0;
+  for (std::size_t d = 0; d < designs(); ++d) count += is_computed(result(d, output)) ? 1 : 0;
   if (count < 2) return "";
   const Output& meant = plan().outputs[output];
   return fmt::format("{} is {:.5g}{} in every design: nothing that varies changes it.", meant.name,
-                     *only, unit_after(meant.unit));
+                     result(ends->first, output), unit_after(meant.unit));
 }
 
 const std::string& SweepView::reason(std::size_t design) const { return reasons_[design]; }
 
 std::string SweepView::text(std::size_t design) const {
-  std::string text;
-  for (std::size_t k = 0; k < variables(); ++k)
-    text +=
-        (k == 0 ? "" : ", ") + variable(k).name() + " " + value_text(variable(k), value(design, k));
-  return text;
+  std::size_t k = 0;
+  return joined(plan().varied, ", ", [&](const Varied& varied) {
+    return varied.variable.name() + " " + value_text(varied.variable, value(design, k++));
+  });
 }
 
 std::size_t SweepView::sought() const {
-  return static_cast<std::size_t>(std::count_if(plan().direction.begin(), plan().direction.end(),
-                                                [](int direction) { return direction != 0; }));
+  return report::count_of(plan().direction, [](int direction) { return direction != 0; });
 }
 
 report::Axis SweepView::axis(std::size_t k) const {
@@ -82,27 +82,11 @@ report::Axis SweepView::axis(std::size_t k) const {
 
 report::Axis SweepView::output_axis(std::size_t k) const {
   constexpr double kManyTimes = 300;  // what spans more is seen by its logarithm
-  double low = INFINITY, high = 0;
-  for (std::size_t i = 0; i < designs(); ++i) {
-    const double v = result(i, k);
-    if (!is_computed(v)) continue;
-    low = std::min(low, v);
-    high = std::max(high, v);
-  }
-  const bool log = positive(low) && std::isfinite(high) && high > kManyTimes * low;
+  const auto ends = this->ends(k);
+  const bool log = ends && positive(result(ends->first, k)) &&
+                   std::isfinite(result(ends->second, k)) &&
+                   result(ends->second, k) > kManyTimes * result(ends->first, k);
   return axis_of(output(k).name, output(k).unit, log);
-}
-
-report::Values SweepView::values(std::size_t k, const std::vector<std::size_t>& chosen) const {
-  report::Values list;
-  for (const std::size_t design : chosen) list.push_back(value(design, k));
-  return list;
-}
-
-report::Values SweepView::results(std::size_t k, const std::vector<std::size_t>& chosen) const {
-  report::Values list;
-  for (const std::size_t design : chosen) list.push_back(result(design, k));
-  return list;
 }
 
 bool SweepView::whole_grid() const {

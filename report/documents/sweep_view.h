@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bentaxis/designs/sweep.h"
@@ -29,6 +30,8 @@ class SweepView {
   double result(std::size_t design, std::size_t output) const {
     return result_.results[design * outputs() + output];
   }
+  /// The designs of the lowest and of the highest value of an output; nothing where none has one.
+  std::optional<std::pair<std::size_t, std::size_t>> ends(std::size_t output) const;
   /// "NAME is .. in every design: ..", or "" where the designs differ or fewer than two have it.
   std::string constant_text(std::size_t output) const;
   /// Why it is infeasible, or "".
@@ -46,8 +49,6 @@ class SweepView {
   /// Axes of variable or output k, with the unit where the name does not say it.
   report::Axis axis(std::size_t k) const;
   report::Axis output_axis(std::size_t k) const;
-  report::Values values(std::size_t k, const std::vector<std::size_t>& chosen) const;
-  report::Values results(std::size_t k, const std::vector<std::size_t>& chosen) const;
 
   /// Whether all combinations of levels are there.
   bool whole_grid() const;
