@@ -1,13 +1,7 @@
 #include "bentaxis/study/tradeoff_document.h"
 
-#include <fmt/format.h>
+#include <span>
 
-#include <algorithm>
-#include <cmath>
-
-#include "answers_text.h"
-#include "bentaxis/pump/error.h"
-#include "bentaxis/pump/number.h"
 #include "bentaxis/study/calibration.h"
 #include "document_parts.h"
 
@@ -41,29 +35,27 @@ std::vector<std::string> recommendations(const std::vector<TradeoffRun>& runs) {
       lines.push_back(fmt::format("For 1e-{} no integrated run is accurate enough.", digits));
       break;
     }
-    const std::string text =
+    // One line for all errors that the same run meets: the smallest of them.
+    if (run == previous) lines.pop_back();
+    lines.push_back(
         fmt::format("For 1e-{} use {} at accuracy {}: {} a turn, error {:.1e} of peak ({}).",
                     digits, run->variant, number_text(*run->accuracy),
-                    time_text(run->seconds_per_turn), run->error.worst, run->error.worst_channel);
-    // One line for all errors that the same run meets: the smallest of them.
-    if (run == previous)
-      lines.back() = text;
-    else
-      lines.push_back(text);
+                    time_text(run->seconds_per_turn), run->error.worst, run->error.worst_channel));
     previous = run;
   }
+  const auto add = [&](const std::string& what, const TradeoffRun& run) {
+    lines.push_back(fmt::format("{} takes {} a turn and is accurate to {:.0e}.", what,
+                                time_text(run.seconds_per_turn), run.error.worst));
+  };
   for (const TradeoffRun& run : runs)
     if (run.done() && run.method == "driven")
-      lines.push_back(fmt::format(
-          "Without integrating, the driven scene \"{}\" takes {} a turn and is accurate to {:.0e}.",
-          run.variant, time_text(run.seconds_per_turn), run.error.worst));
+      add("Without integrating, the driven scene \"" + run.variant + "\"", run);
   for (const TradeoffRun& run : runs)
     if (run.model == "analytic" &&
         (run.method == "scalar" || &run == &runs.back() || (&run)[1].method != "batch"))
-      lines.push_back(
-          fmt::format("The closed form, {}{}, takes {} a turn and is accurate to {:.0e}.",
-                      run.method, run.variant.empty() ? "" : " (" + run.variant + ")",
-                      time_text(run.seconds_per_turn), run.error.worst));
+      add("The closed form, " + run.method + (run.variant.empty() ? "" : " (" + run.variant + ")") +
+              ",",
+          run);
   return lines;
 }
 
@@ -74,18 +66,17 @@ struct Column {
   const char* heading;
   Cell (*cell)(const TradeoffRun&);
 };
-Cell number_or_none(double value) { return std::isfinite(value) ? Cell(value) : Cell(); }
 template <double AchievedError::*member>
 Cell error_cell(const TradeoffRun& run) {
-  return run.done() ? number_or_none(run.error.*member) : Cell();
+  return run.done() && std::isfinite(run.error.*member) ? Cell(run.error.*member) : Cell();
 }
 template <auto member>
 Cell record_cell(const TradeoffRun& run) {
-  return run.record ? Cell((*run.record).*member) : Cell();
-}
-template <double multibody::WorstErrors::*member>
-Cell drift_cell(const TradeoffRun& run) {
-  return run.record ? Cell(run.record->whole.*member) : Cell();
+  if (!run.record) return {};
+  if constexpr (requires { run.record->whole.*member; })
+    return run.record->whole.*member;
+  else
+    return (*run.record).*member;
 }
 const std::vector<Column>& columns() {
   static const std::vector<Column> list = {
@@ -94,7 +85,7 @@ const std::vector<Column>& columns() {
       {"method", "method", [](const TradeoffRun& r) { return Cell(r.method); }},
       {"variant", "scene, integrator", [](const TradeoffRun& r) { return Cell(r.variant); }},
       {"accuracy", "accuracy asked",
-       [](const TradeoffRun& r) { return r.accuracy ? Cell(*r.accuracy) : Cell(); }},
+       [](const TradeoffRun& r) { return report::cell_of(r.accuracy); }},
       {"seconds_per_turn", "time per turn, s",
        [](const TradeoffRun& r) { return r.done() ? Cell(r.seconds_per_turn) : Cell(); }},
       {"error_worst", "error, worst", error_cell<&AchievedError::worst>},
@@ -104,10 +95,10 @@ const std::vector<Column>& columns() {
       {"error_Rcs", "error Rcs", error_cell<&AchievedError::rcs>},
       {"error_Td", "error Td", error_cell<&AchievedError::td>},
       {"position_drift_m", "constraint error, m",
-       drift_cell<&multibody::WorstErrors::position_error>},
+       record_cell<&multibody::WorstErrors::position_error>},
       {"velocity_drift_m_per_s", "constraint rate error, m/s",
-       drift_cell<&multibody::WorstErrors::velocity_error>},
-      {"gear_phase_rad", "gear phase, rad", drift_cell<&multibody::WorstErrors::gear_phase>},
+       record_cell<&multibody::WorstErrors::velocity_error>},
+      {"gear_phase_rad", "gear phase, rad", record_cell<&multibody::WorstErrors::gear_phase>},
       {"steps", "steps", record_cell<&multibody::IntegrationRecord::steps>},
       {"evaluations", "evaluations", record_cell<&multibody::IntegrationRecord::evaluations>},
       {"status", "status",
@@ -117,8 +108,7 @@ const std::vector<Column>& columns() {
 
 std::vector<TradeoffRun> all_runs(const TradeoffStudy& study) {
   std::vector<TradeoffRun> all;
-  for (const auto& pressure : study.pressures)
-    all.insert(all.end(), pressure.runs.begin(), pressure.runs.end());
+  for (const auto& pressure : study.pressures) append(all, pressure.runs);
   return all;
 }
 
@@ -128,12 +118,11 @@ std::vector<report::Record> records(const TradeoffStudy& study) {
     const auto front = pareto_front(pressure.runs, is_integrated);
     for (std::size_t i = 0; i < pressure.runs.size(); ++i) {
       const TradeoffRun& run = pressure.runs[i];
-      report::Record row;
+      report::Record& row = rows.emplace_back();
       for (const Column& column : columns()) row.emplace_back(column.key, column.cell(run));
       row.back().second = run.done() ? "done" : "failed";
       row.emplace_back("reason", run.done() ? Cell() : Cell(run.failure));
       row.emplace_back("on_front", contains(front, i));
-      rows.push_back(std::move(row));
     }
   }
   return rows;
@@ -142,47 +131,40 @@ std::vector<report::Record> records(const TradeoffStudy& study) {
 // ---- Sections and figures
 
 report::Section table_of(const TradeoffStudy::Pressure& pressure, const TradeoffOptions& options) {
-  report::Table table;
-  for (std::size_t c = 1; c < columns().size(); ++c)
-    table.columns.emplace_back(columns()[c].heading);
-  for (const TradeoffRun& run : pressure.runs) {
-    auto& row = table.rows.emplace_back();
-    for (std::size_t c = 1; c < columns().size(); ++c) row.push_back(columns()[c].cell(run));
-  }
-  return {fmt::format("Every run, {} pressure", pressure.name),
-          fmt::format("One turn, results at {} angles; every one of them ends a step of an "
-                      "integrated run. Errors are the largest difference from the closed "
-                      "form in extended precision, over the peak.",
-                      options.samples_per_revolution),
-          {},
-          std::move(table)};
+  report::NewSection section(
+      fmt::format("Every run, {} pressure", pressure.name),
+      fmt::format("One turn, results at {} angles; every one of them ends a step of an integrated "
+                  "run. Errors are the largest difference from the closed form in extended "
+                  "precision, over the peak.",
+                  options.samples_per_revolution));
+  const auto own = std::span(columns()).subspan(1);  // the title says the pressure
+  section.columns(report::each_of(own, [](const Column& c) { return std::string(c.heading); }));
+  for (const TradeoffRun& run : pressure.runs)
+    section.row(report::each_of(own, [&](const Column& c) { return c.cell(run); }));
+  return section;
 }
 
 report::Section orders_of(const TradeoffStudy::Pressure& pressure, const TradeoffOptions& options) {
-  report::Table table{{"integrator", "runs", "order, last pair", "order, least squares",
-                       "order of the method", "outside it"},
-                      {}};
-  const auto cell = [](const std::optional<double>& value) {
-    return value ? Cell(*value) : Cell();
-  };
+  report::NewSection section(
+      fmt::format("Convergence, {} pressure", pressure.name),
+      "Exponent p of error = const x step^p, with the mean step of a run (one turn over its "
+      "steps). Runs whose step the samples set, not the accuracy, are left out; so are errors "
+      "above 1e-2. An exponent that is off the order of the method, as Simbody states it, by more "
+      "than half an order is marked: it is a property of these runs and not of the method (an "
+      "order that varies from step to step, edges of the pressure, an extrapolation that the "
+      "stated order does not count).");
+  section.columns("integrator", "runs", "order, last pair", "order, least squares",
+                  "order of the method", "outside it");
   for (const auto integrator : options.integrators) {
     const Order order = order_of(pressure.runs, name_of(integrator));
     const auto theory = multibody::method_orders(integrator);
-    table.rows.push_back(
-        {order.integrator, long{order.runs}, cell(order.last_pair), cell(order.least_squares),
-         theory.first == theory.second ? fmt::format("{}", theory.first)
-                                       : fmt::format("{} to {}", theory.first, theory.second),
-         outside_theory(order, theory)});
+    section.row(order.integrator, order.runs, order.last_pair, order.least_squares,
+                theory.first == theory.second
+                    ? fmt::format("{}", theory.first)
+                    : fmt::format("{} to {}", theory.first, theory.second),
+                outside_theory(order, theory));
   }
-  return {fmt::format("Convergence, {} pressure", pressure.name),
-          "Exponent p of error = const x step^p, with the mean step of a run (one turn over "
-          "its steps). Runs whose step the samples set, not the accuracy, are left out; so "
-          "are errors above 1e-2. An exponent that is off the order of the method, as Simbody "
-          "states it, by more than half an order is marked: it is a property of these runs and "
-          "not of the method (an order that varies from step to step, edges of the pressure, an "
-          "extrapolation that the stated order does not count).",
-          {},
-          std::move(table)};
+  return section;
 }
 
 // The same symbol for the same series in every figure: what is not integrated comes first.
@@ -190,7 +172,7 @@ int style_of(const TradeoffRun& run) {
   if (run.model == "analytic") return run.method == "scalar" ? 0 : 1;
   if (!is_integrated(run)) return 2;
   const auto& names = multibody::integrator_names();
-  return 3 + static_cast<int>(std::find(names.begin(), names.end(), run.variant) - names.begin());
+  return 3 + static_cast<int>(std::ranges::find(names, run.variant) - names.begin());
 }
 
 // Runs of the same kind and variant make one series each.
@@ -207,8 +189,8 @@ report::Figure figure_of(const TradeoffStudy::Pressure& pressure, bool by_accura
         is_integrated(run)
             ? run.variant
             : run.model + " " + run.method + (run.method == "driven" ? " " + run.variant : "");
-    auto it = std::find_if(series.begin(), series.end(),
-                           [&](const report::ScatterSeries& s) { return s.name == name; });
+    auto it = std::ranges::find_if(series,
+                                   [&](const report::ScatterSeries& s) { return s.name == name; });
     if (it == series.end())
       it = series.insert(it, {name, style_of(run), is_integrated(run), false, {}});
     it->points.push_back(point(run));
@@ -235,11 +217,9 @@ report::Figure figure_of(const TradeoffStudy::Pressure& pressure, bool by_accura
 std::vector<std::string> answers_of(const TradeoffStudy& study) {
   std::vector<std::string> answers;
   for (const auto& pressure : study.pressures) {
-    const TradeoffRun* fastest = nullptr;
-    for (const TradeoffRun& run : pressure.runs)
-      if (run.done() && !is_integrated(run) &&
-          (fastest == nullptr || run.seconds_per_turn < fastest->seconds_per_turn))
-        fastest = &run;
+    const TradeoffRun* fastest = report::largest_of(pressure.runs, [](const TradeoffRun& run) {
+      return run.done() && !is_integrated(run) ? -run.seconds_per_turn : not_computed();
+    });
     if (fastest != nullptr)
       answers.push_back(fmt::format(
           "{} pressure: fastest of all is {}: {} a turn, error {:.0e} of peak.", pressure.name,
@@ -256,18 +236,14 @@ std::vector<std::string> answers_of(const TradeoffStudy& study) {
                             time_text(run->seconds_per_turn)));
     }
   }
-  for (std::string& answer : answers) answer = report::sentence(std::move(answer));
-  return answers;
+  return report::each_of(answers, report::sentence);
 }
 
 std::string headline_of(const TradeoffStudy& study) {
-  std::size_t runs = 0, failed = 0;
-  for (const auto& pressure : study.pressures)
-    for (const TradeoffRun& run : pressure.runs) {
-      ++runs;
-      failed += run.done() ? 0 : 1;
-    }
-  return fmt::format("{} runs timed on this machine against their error{}.", runs,
+  const auto runs = all_runs(study);
+  const std::size_t failed =
+      report::count_of(runs, [](const TradeoffRun& run) { return !run.done(); });
+  return fmt::format("{} runs timed on this machine against their error{}.", runs.size(),
                      failed == 0 ? "" : fmt::format("; {} failed", failed));
 }
 
@@ -290,39 +266,31 @@ report::Document tradeoff_document(const TradeoffStudy& study, const report::Lin
   document.program = program;
   put_description(document, description);
   document.summary = summary_of(study);
-  document.verdict = report::Verdict{std::nullopt, headline_of(study), "Trade-off"};
-  document.verdict->answers = answers_of(study);
+  document.verdict = {.agrees = std::nullopt,
+                      .headline = headline_of(study),
+                      .word = "Trade-off",
+                      .answers = answers_of(study)};
   document.records = records(study);
-  document.runs.emplace();
-  document.figures.emplace();
   for (const auto& pressure : study.pressures) {
-    document.figures->push_back(figure_of(pressure, false));
-    document.figures->push_back(figure_of(pressure, true));
-    document.runs->push_back(table_of(pressure, study.options));
-    document.runs->push_back(orders_of(pressure, study.options));
+    report::append(document.figures,
+                   std::vector{figure_of(pressure, false), figure_of(pressure, true)});
+    report::append(document.runs, std::vector{table_of(pressure, study.options),
+                                              orders_of(pressure, study.options)});
   }
   return document;
 }
 
 std::string tradeoff_csv(const TradeoffStudy& study) {
-  std::vector<std::string> keys;
-  for (const Column& column : columns()) keys.emplace_back(column.key);
-  CsvRows csv(report::joined(keys, ","));
-  for (const TradeoffRun& run : all_runs(study)) {
-    std::vector<Cell> cells;
-    for (const Column& column : columns()) cells.push_back(column.cell(run));
-    csv.row(cells);
-  }
+  CsvRows csv(joined(columns(), ",", [](const Column& column) { return column.key; }));
+  for (const TradeoffRun& run : all_runs(study))
+    csv.row(report::each_of(columns(), [&](const Column& column) { return column.cell(run); }));
   return std::move(csv).text();
 }
 
 std::string tradeoff_text(const TradeoffStudy& study) {
   std::string text =
-      report::answers_text(study.the_case.name, headline_of(study), answers_of(study));
-  for (const auto& group : summary_of(study).groups) {
-    text += group.title + "\n";
-    for (const auto& line : group.lines) text += "  " + line + "\n";
-  }
+      report::answers_text(study.the_case.name, headline_of(study), answers_of(study)) +
+      report::summary_text(summary_of(study));
   text += fmt::format("\n{:<8} {:<44} {:>12} {:>9} {:>9} {:>8} {:>8}\n", "pressure", "run",
                       "time a turn", "error", "drift, m", "steps", "evals");
   for (const TradeoffRun& run : all_runs(study)) {
