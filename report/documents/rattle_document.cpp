@@ -1,14 +1,7 @@
 #include "bentaxis/study/rattle_document.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <numeric>
 
-#include "answers_text.h"
-#include "bentaxis/pump/units.h"
 #include "bentaxis/study/failed_points.h"
 #include "document_parts.h"
 
@@ -42,18 +35,26 @@ const Words& words(const RattleMap& map) {
   return by_pistons(map) ? kPistons : kTeeth;
 }
 
-std::size_t two_states_of(const RattleMap& map) {
-  std::size_t count = 0;
+// use(row, number of the speed) of every point where the sweeps up and down end in other motions.
+template <class Use>
+void for_each_two_states(const RattleMap& map, const Use& use) {
   for (const RattleRow& row : map.rows)
     for (std::size_t j = 0; j < row.up.size(); ++j)
-      count += two_states(row.up[j], row.down[j]) ? 1 : 0;
+      if (two_states(row.up[j], row.down[j])) use(row, j);
+}
+
+std::size_t two_states_of(const RattleMap& map) {
+  std::size_t count = 0;
+  for_each_two_states(map, [&](const RattleRow&, std::size_t) { ++count; });
   return count;
 }
 
+std::size_t failed_of(const RattleRow& row) {
+  return report::count_of(row.up, [](const RattlePoint& point) { return !point.done(); });
+}
+
 std::size_t agreeing(const RattleMap& map) {
-  return static_cast<std::size_t>(
-      std::count_if(map.checks.begin(), map.checks.end(),
-                    [](const RattleCheck& check) { return check.agrees(); }));
+  return report::count_of(map.checks, [](const RattleCheck& check) { return check.agrees(); });
 }
 
 double turns_of(int parts) { return static_cast<double>(parts) / kPartsOfTurn; }
@@ -66,78 +67,72 @@ std::string headline(const RattleMap& map) {
       classes.push_back(fmt::format("{} at {}", rattle_class_names()[k], counts[k]));
   // Pressures that failed as a whole are not among the rows.
   const std::size_t speeds = map.options.speed_rpm.size(), lost = map.failed.size() * speeds;
+  std::size_t failed = lost;
+  for (const RattleRow& row : map.rows) failed += failed_of(row);
   std::string text =
       fmt::format("{} of {} points", joined(classes), map.rows.size() * speeds + lost);
-  if (const auto failed = std::accumulate(
-          map.rows.begin(), map.rows.end(), static_cast<std::ptrdiff_t>(lost),
-          [](std::ptrdiff_t sum, const RattleRow& row) {
-            return sum + std::count_if(row.up.begin(), row.up.end(),
-                                       [](const RattlePoint& point) { return !point.done(); });
-          });
-      failed > 0)
-    text += fmt::format(", {} could not be computed", failed);
+  if (failed > 0) text += fmt::format(", {} could not be computed", failed);
   if (const std::size_t both = two_states_of(map); both > 0)
     text += fmt::format("; another steady state swept down at {}", both);
   if (map.checks.empty()) return text;
   text += fmt::format("; Simbody agrees at {} of {} points", agreeing(map), map.checks.size());
-  const auto partly = std::count_if(map.checks.begin(), map.checks.end(),
-                                    [](const RattleCheck& check) { return check.chaotic(); });
-  if (partly > 0)
+  if (const std::size_t partly =
+          report::count_of(map.checks, [](const RattleCheck& check) { return check.chaotic(); });
+      partly > 0)
     text += fmt::format(", {} of them compared over part of their turns only", partly);
   return text;
+}
+
+// Speeds at which the contact is lost, swept up or down: "300 to 900, 1500".
+std::string speeds_to_avoid(const RattleRow& row, const std::vector<double>& speeds) {
+  const auto avoided = [&](std::size_t j) {
+    const auto rattles = [](const RattlePoint& point) {
+      return point.done() && point.kind != RattleClass::carries;
+    };
+    return rattles(row.up[j]) || rattles(row.down[j]);
+  };
+  std::vector<std::string> ranges;
+  for (std::size_t j = 0; j < row.up.size(); ++j) {
+    if (!avoided(j)) continue;
+    const std::size_t from = j;
+    while (j + 1 < row.up.size() && avoided(j + 1)) ++j;
+    ranges.push_back(j > from ? fmt::format("{:.4g} to {:.4g}", speeds[from], speeds[j])
+                              : fmt::format("{:.4g}", speeds[from]));
+  }
+  return joined(ranges);
 }
 
 // Speeds to avoid at the pressure of the map that is nearest to the case's own: "300 to 900 rpm".
 std::vector<std::string> answers_of(const RattleMap& map) {
   const double rated = map.the_case.pressure.ports.delivery / kPascalPerBar;
-  const RattleRow* nearest = nullptr;
-  for (const RattleRow& row : map.rows)
-    if (nearest == nullptr ||
-        std::abs(row.delivery_bar - rated) < std::abs(nearest->delivery_bar - rated))
-      nearest = &row;
+  const RattleRow* nearest = report::largest_of(
+      map.rows, [&](const RattleRow& row) { return -std::abs(row.delivery_bar - rated); });
   if (nearest == nullptr) return {};
-  const std::vector<double>& speeds = map.options.speed_rpm;
-  const auto avoided = [&](std::size_t j) {
-    const auto rattles = [](const RattlePoint& point) {
-      return point.done() && point.kind != RattleClass::carries;
-    };
-    return rattles(nearest->up[j]) || rattles(nearest->down[j]);
-  };
-  std::string text;
-  for (std::size_t j = 0; j < nearest->up.size(); ++j) {
-    if (!avoided(j)) continue;
-    const std::size_t from = j;
-    while (j + 1 < nearest->up.size() && avoided(j + 1)) ++j;
-    text += fmt::format("{}{:.4g}", text.empty() ? "" : ", ", speeds[from]);
-    if (j > from) text += fmt::format(" to {:.4g}", speeds[j]);
-  }
+  const std::string avoided = speeds_to_avoid(*nearest, map.options.speed_rpm);
   const bool all = map.failed.empty();
-  const std::string at = fmt::format(
+  const std::string lost = joined(map.failed, ", ", [](const FailedPoint& failed) {
+    return fmt::format("{:.4g} bar", failed.value);
+  });
+  const std::size_t unknown = failed_of(*nearest);
+  std::string text = fmt::format(
       "At {:.4g} bar, of the pressures of the map{} the nearest to the case's {:.4g} bar: ",
       nearest->delivery_bar, all ? "" : " that could be computed", rated);
-  std::string lost;
-  for (const FailedPoint& failed : map.failed)
-    lost += fmt::format("{}{:.4g} bar", lost.empty() ? "" : ", ", failed.value);
-  if (!all) lost = " Could not be computed: " + lost + ".";
-  const auto unknown = static_cast<std::size_t>(
-      std::count_if(nearest->up.begin(), nearest->up.end(),
-                    [](const RattlePoint& point) { return !point.done(); }));
-  const std::string open = unknown == 0 ? ""
-                                        : fmt::format(" {} of its {} speeds could not be computed.",
-                                                      unknown, nearest->up.size());
+  text += avoided.empty()
+              ? fmt::format("the {} are loaded throughout the turn at all speeds of the map{}.",
+                            words(map).contacts, unknown == 0 ? "" : " that could be computed")
+              : fmt::format(
+                    "avoid {} rpm: the {} are not loaded throughout the turn (speeds of "
+                    "the map).",
+                    avoided, words(map).contacts);
+  if (unknown > 0)
+    text += fmt::format(" {} of its {} speeds could not be computed.", unknown, nearest->up.size());
+  if (!all) text += " Could not be computed: " + lost + ".";
   // A sweep starts where it ended at the speed before.
-  const std::string starts =
-      speeds.size() > 1 ? ""
-                        : " With one speed each sweep has one start: another steady state is found "
-                          "with speeds on both sides of it.";
-  return {at +
-          (text.empty()
-               ? fmt::format("the {} are loaded throughout the turn at all speeds of the map{}.",
-                             words(map).contacts, unknown == 0 ? "" : " that could be computed")
-               : fmt::format("avoid {} rpm: the {} are not loaded throughout the turn (speeds of "
-                             "the map).",
-                             text, words(map).contacts)) +
-          open + lost + starts};
+  if (map.options.speed_rpm.size() <= 1)
+    text +=
+        " With one speed each sweep has one start: another steady state is found with speeds "
+        "on both sides of it.";
+  return {text};
 }
 
 std::string against(RattleClass analytic, RattleClass multibody) {
@@ -168,59 +163,53 @@ std::string agreement_text(const BoundaryAgreement& agreement) {
 
 report::Section settings_section(const RattleMap& map) {
   const RattleOptions& o = map.options;
-  report::Section section{"How it was computed", "", {}, {}};
-  section.facts = {{"shaft", "constant speed of the point; [drive] is not used"}};
+  report::NewSection section("How it was computed");
+  section.fact("shaft", "constant speed of the point; [drive] is not used");
   if (rigid(map)) {
     section.text =
         "Teeth are rigid: block and shaft have the same angle. Only loaded and reversing are "
         "distinguished, by the sign of the tooth force.";
     return section;
   }
-  const auto add = [&](const char* name, const std::string& text) {
-    section.facts.emplace_back(name, text);
-  };
-  add("first point",
-      fmt::format("the lowest speed, from theta = psi = 0, the middle of the {}, both at the "
-                  "shaft's speed",
-                  by_pistons(map) ? "free play" : "backlash"));
-  add("every other point",
-      "from the final state of the neighbouring point: up in speed, then down");
-  add("discarded", fmt::format("{} turns, fewer where the motion repeats itself", o.discard));
-  add("observed", fmt::format("{} turns, or one period where the motion repeats itself", o.turns));
-  add("repeats itself",
-      fmt::format("lag and its rate as 1 to {} turns ago, within {:g} of their scales, twice "
-                  "running",
-                  kLongestPeriod, kRepeats));
-  add("in touch throughout",
-      fmt::format("{} turns without separation: the last of them is observed", kTurnsInTouch));
-  add("impact", fmt::format("a touch at {:g} m/s of approach or more", kImpactSpeed));
-  if (by_pistons(map)) {
-    add("sides", "the sign of theta - psi when a piston touches its wall");
-  } else {
-    add("largest impulse",
-        "from an impact until its flank leaves (rattle.csv: largest_impulse_Ns): of teeth that hit "
-        "once and then carry, with what they carry");
-  }
-  add("loses contact",
-      fmt::format("no {} touches for more than {:g} of the time", words(map).contact, kNoGap));
-  add("two steady states",
-      fmt::format("up and down differ in class, or the largest force of every turn of one is above "
-                  "all of the other and {:g} % larger",
-                  100 * kOtherForce));
-  add("integration", fmt::format("BDF of variable order (CVODES), errors of a step for an error of "
-                                 "{:g} of peak (--error)",
-                                 o.error));
+  section.fact("first point",
+               "the lowest speed, from theta = psi = 0, the middle of the {}, both at the shaft's "
+               "speed",
+               by_pistons(map) ? "free play" : "backlash");
+  section.fact("every other point",
+               "from the final state of the neighbouring point: up in speed, then down");
+  section.fact("discarded", "{} turns, fewer where the motion repeats itself", o.discard);
+  section.fact("observed", "{} turns, or one period where the motion repeats itself", o.turns);
+  section.fact("repeats itself",
+               "lag and its rate as 1 to {} turns ago, within {:g} of their scales, twice running",
+               kLongestPeriod, kRepeats);
+  section.fact("in touch throughout", "{} turns without separation: the last of them is observed",
+               kTurnsInTouch);
+  section.fact("impact", "a touch at {:g} m/s of approach or more", kImpactSpeed);
+  if (by_pistons(map))
+    section.fact("sides", "the sign of theta - psi when a piston touches its wall");
+  else
+    section.fact("largest impulse",
+                 "from an impact until its flank leaves (rattle.csv: largest_impulse_Ns): of teeth "
+                 "that hit once and then carry, with what they carry");
+  section.fact("loses contact", "no {} touches for more than {:g} of the time", words(map).contact,
+               kNoGap);
+  section.fact("two steady states",
+               "up and down differ in class, or the largest force of every turn of one is above "
+               "all of the other and {:g} % larger",
+               100 * kOtherForce);
+  section.fact("integration",
+               "BDF of variable order (CVODES), errors of a step for an error of {:g} of peak "
+               "(--error)",
+               o.error);
   return section;
 }
 
 report::Section classes_section(const RattleMap& map) {
-  report::Section section{"Classes",
-                          "Of the points swept up and down. Share out of contact: of the upward "
-                          "points of the class, mean.",
-                          {},
-                          {{"class", "points, up", "points, down", "largest force over mean, up",
-                            "share out of contact, up"},
-                           {}}};
+  report::NewSection section("Classes",
+                             "Of the points swept up and down. Share out of contact: of the upward "
+                             "points of the class, mean.");
+  section.columns("class", "points, up", "points, down", "largest force over mean, up",
+                  "share out of contact, up");
   const auto up = counts_of(map, &RattleRow::up), down = counts_of(map, &RattleRow::down);
   for (std::size_t k = 0; k < up.size(); ++k) {
     double most = 0, apart = 0;
@@ -230,79 +219,72 @@ report::Section classes_section(const RattleMap& map) {
           if (p.mean > 0) most = std::max(most, p.over_mean());
           apart += p.apart / static_cast<double>(up[k]);
         }
-    section.table.rows.push_back({rattle_class_names()[k], up[k], down[k],
-                                  up[k] > 0 ? report::Cell(most) : report::Cell(),
-                                  up[k] > 0 ? report::Cell(apart) : report::Cell()});
+    const auto if_any = [&](double value) { return up[k] > 0 ? value : not_computed(); };
+    section.row(rattle_class_names()[k], up[k], down[k], if_any(most), if_any(apart));
   }
   return section;
 }
 
 report::Section boundary_section(const RattleMap& map) {
   const BoundaryAgreement agreement = boundary_agreement(map);
-  report::Section section{
+  report::NewSection section(
       "Boundary by the criterion",
       std::string(by_pistons(map) ? "A transfer without play keeps the sign of its torque"
                                   : "Rigid teeth keep the sign of their force") +
-          " as long as the drag on the block, Cc psi', and "
-          "what its pistons take exceed what they turn it on by, all through the turn. The speed "
-          "at which the smallest force passes 0, beside the speed half way between those where the "
-          "upward sweep ceases or begins to carry: " +
-          agreement_text(agreement) + "." +
-          (by_pistons(map)
-               ? " In the free play pistons under pressure push the block away from the "
-                 "middle, which the criterion does not have."
-               : ""),
-      {},
-      {{"delivery pressure, bar", "criterion, rpm", "simulated, rpm", "difference, rpm"}, {}}};
+          " as long as the drag on the block, Cc psi', and what its pistons take exceed what they "
+          "turn it on by, all through the turn. The speed at which the smallest force passes 0, "
+          "beside the speed half way between those where the upward sweep ceases or begins to "
+          "carry: " +
+          agreement_text(agreement) + ".");
+  if (by_pistons(map))
+    section.say(
+        "In the free play pistons under pressure push the block away from the middle, which the "
+        "criterion does not have.");
+  section.columns("delivery pressure, bar", "criterion, rpm", "simulated, rpm", "difference, rpm");
   for (const auto& place : agreement.places)
-    section.table.rows.push_back({place.delivery_bar, place.criterion_rpm, place.simulated_rpm,
-                                  place.simulated_rpm - place.criterion_rpm});
-  if (agreement.places.empty())
-    section.facts.emplace_back("boundary", "none within these speeds and pressures");
+    section.row(place.delivery_bar, place.criterion_rpm, place.simulated_rpm,
+                place.simulated_rpm - place.criterion_rpm);
+  if (agreement.places.empty()) section.fact("boundary", "none within these speeds and pressures");
   return section;
 }
 
 report::Section states_section(const RattleMap& map) {
-  report::Section section{"Two steady states",
-                          "Points where the upward and the downward sweep converge to different "
-                          "motions. No period: irregular, longer, or still decaying.",
-                          {{"points", std::to_string(two_states_of(map))}},
-                          {{"delivery pressure, bar", "speed, rpm", "up", "down", "largest up, N",
-                            "largest down, N", "period up, turns", "period down, turns"},
-                           {}}};
   constexpr std::size_t kMaxRows = 100;  // the rest is in the CSV file
+  report::NewSection section("Two steady states",
+                             "Points where the upward and the downward sweep converge to different "
+                             "motions. No period: irregular, longer, or still decaying.");
+  section.fact("points", std::to_string(two_states_of(map)));
+  section.columns("delivery pressure, bar", "speed, rpm", "up", "down", "largest up, N",
+                  "largest down, N", "period up, turns", "period down, turns");
   const auto period = [](const RattlePoint& p) {
-    return p.period > 0 ? report::Cell(static_cast<long>(p.period)) : report::Cell("none");
+    return p.period > 0 ? report::cell_of(p.period) : report::Cell("none");
   };
-  for (const RattleRow& row : map.rows)
-    for (std::size_t j = 0; j < row.up.size(); ++j) {
-      const RattlePoint &u = row.up[j], &d = row.down[j];
-      if (!two_states(u, d) || section.table.rows.size() >= kMaxRows) continue;
-      section.table.rows.push_back({row.delivery_bar, map.options.speed_rpm[j], to_string(u.kind),
-                                    to_string(d.kind), u.largest, d.largest, period(u), period(d)});
-    }
+  for_each_two_states(map, [&](const RattleRow& row, std::size_t j) {
+    const RattlePoint &u = row.up[j], &d = row.down[j];
+    if (section.table.rows.size() < kMaxRows)
+      section.row(row.delivery_bar, map.options.speed_rpm[j], to_string(u.kind), to_string(d.kind),
+                  u.largest, d.largest, period(u), period(d));
+  });
   return section;
 }
 
 report::Section checks_section(const RattleMap& map) {
-  report::Section section{
+  report::NewSection section(
       "Recomputed by Simbody",
       "Points spread over the classes, through the observed turns from the state at which they "
       "begin. A second run of the closed form from a slightly disturbed state measures the "
       "amplification of disturbances: the tolerance of the largest force is the integration error "
       "times this factor. Where the factor is too large, nothing is compared; such a motion is "
       "chaotic, and later results agree only in kind. Where the classes differ, that of the closed "
-      "form is given first.",
-      {{"agree", fmt::format("{} of {}", agreeing(map), map.checks.size())}},
-      {{"bar", "rpm", "class", "turns compared", "of", "growth", "largest force apart by",
-        "allowed", "agrees", "all turns: class", "largest, N", "Simbody, N"},
-       {}}};
+      "form is given first.");
+  section.fact("agree", "{} of {}", agreeing(map), map.checks.size());
+  section.columns("bar", "rpm", "class", "turns compared", "of", "growth", "largest force apart by",
+                  "allowed", "agrees", "all turns: class", "largest, N", "Simbody, N");
   for (const RattleCheck& c : map.checks)
-    section.table.rows.push_back({map.options.delivery_bar[c.row], map.options.speed_rpm[c.speed],
-                                  against(c.analytic, c.multibody), turns_of(c.judged),
-                                  turns_of(c.parts), c.growth, c.difference, c.allowed, c.agrees(),
-                                  against(c.analytic_whole, c.multibody_whole), c.largest_analytic,
-                                  c.largest_multibody});
+    section.row(map.options.delivery_bar[c.row], map.options.speed_rpm[c.speed],
+                against(c.analytic, c.multibody), turns_of(c.judged), turns_of(c.parts), c.growth,
+                c.difference, c.allowed, c.agrees(), against(c.analytic_whole, c.multibody_whole),
+                c.largest_analytic, c.largest_multibody);
   return section;
 }
 
@@ -312,24 +294,19 @@ class MapFigures {
     std::size_t most = 0;
     for (const RattleRow& row : map.rows) most = std::max(most, row.boundary_rpm.size());
     for (std::size_t k = 0; k < most; ++k) {
-      report::XySeries line{
-          k == 0 ? fmt::format("criterion: at lower speed {} would reverse", words(map).criterion)
-                 : "criterion, again",
-          {},
-          {}};
-      for (const RattleRow& row : map.rows) {
-        line.x.push_back(k < row.boundary_rpm.size() ? row.boundary_rpm[k] : not_computed());
-        line.y.push_back(row.delivery_bar);
-      }
-      lines_.push_back(std::move(line));
+      lines_.push_back(
+          {k == 0 ? fmt::format("criterion: at lower speed {} would reverse", words(map).criterion)
+                  : "criterion, again",
+           {},
+           {}});
+      for (const RattleRow& row : map.rows)
+        lines_.back().add(k < row.boundary_rpm.size() ? row.boundary_rpm[k] : not_computed(),
+                          row.delivery_bar);
     }
     report::XySeries marks{"up and down differ", {}, {}};
-    for (const RattleRow& row : map.rows)
-      for (std::size_t j = 0; j < row.up.size(); ++j)
-        if (two_states(row.up[j], row.down[j])) {
-          marks.x.push_back(map.options.speed_rpm[j]);
-          marks.y.push_back(row.delivery_bar);
-        }
+    for_each_two_states(map, [&](const RattleRow& row, std::size_t j) {
+      marks.add(map.options.speed_rpm[j], row.delivery_bar);
+    });
     if (!marks.x.empty()) marks_ = std::move(marks);
   }
 
@@ -344,17 +321,16 @@ class MapFigures {
                         {},
                         {},
                         {}};
+    bool all_done = true;
     for (const RattleRow& row : map_.rows) {
-      m.values.emplace_back();
-      m.reasons.emplace_back();
-      for (const RattlePoint& point : row.*sweep) {
-        m.values.back().push_back(point.done() ? value(point) : not_computed());
-        m.reasons.back().push_back(point.reason);
-      }
+      m.values.push_back(report::each_of(row.*sweep, [&](const RattlePoint& point) {
+        return point.done() ? value(point) : not_computed();
+      }));
+      m.reasons.push_back(
+          report::each_of(row.*sweep, [](const RattlePoint& point) { return point.reason; }));
+      all_done = all_done && row.done();
     }
-    if (std::all_of(map_.rows.begin(), map_.rows.end(),
-                    [](const RattleRow& row) { return row.done(); }))
-      m.reasons.clear();
+    if (all_done) m.reasons.clear();
     m.lines = lines_;
     return {id, title, "", std::move(m)};
   }
@@ -385,26 +361,24 @@ class MapFigures {
 std::vector<report::Figure> map_figures(const RattleMap& map) {
   const MapFigures make(map);
   const Words& of = words(map);
-  std::vector<report::Figure> figures = {make.classes(
-      "classes", fmt::format("Contact of the {}, speed swept up", of.contacts), &RattleRow::up)};
+  const std::string contact = fmt::format("Contact of the {}, speed swept ", of.contacts);
+  std::vector<report::Figure> figures = {make.classes("classes", contact + "up", &RattleRow::up)};
   figures.front().note = fmt::format(
       "One rectangle per point. The line is where the smallest force of {} over the turn passes 0.",
       of.criterion);
   if (!rigid(map)) {
-    figures.push_back(make.classes("classes_down",
-                                   fmt::format("Contact of the {}, speed swept down", of.contacts),
-                                   &RattleRow::down));
+    figures.push_back(make.classes("classes_down", contact + "down", &RattleRow::down));
     figures.push_back(make.linear("apart", "Share of the time without contact, swept up",
                                   {"share of the time", "%"},
                                   [](const RattlePoint& p) { return 100 * p.apart; }));
     figures.push_back(make.linear("impacts", "Impacts per turn, swept up", {"impacts per turn"},
                                   [](const RattlePoint& p) { return p.impacts; }));
   }
-  figures.push_back(make.figure(
-      "over_mean", fmt::format("Largest {} over the mean, swept up", of.force),
-      {"largest over mean"}, &RattleRow::up, [](const RattlePoint& p) { return p.over_mean(); }));
-  figures.push_back(make.figure("largest", fmt::format("Largest {}, swept up", of.force),
-                                {"force", "N"}, &RattleRow::up,
+  const std::string largest = fmt::format("Largest {}", of.force);
+  figures.push_back(make.figure("over_mean", largest + " over the mean, swept up",
+                                {"largest over mean"}, &RattleRow::up,
+                                [](const RattlePoint& p) { return p.over_mean(); }));
+  figures.push_back(make.figure("largest", largest + ", swept up", {"force", "N"}, &RattleRow::up,
                                 [](const RattlePoint& p) { return p.largest; }));
   return figures;
 }
@@ -418,25 +392,20 @@ report::Document rattle_document(const RattleMap& map, const report::Lines& prog
                     map.the_case.name + (by_pistons(map) ? ": where the block rattles"
                                                          : ": where the gear rattles"),
                     program);
-  document.verdict = report::Verdict{map.agrees(), headline(map)};
-  document.verdict->answers = answers_of(map);
-  if (map.checks.empty()) {
-    document.verdict->agrees.reset();
-    document.verdict->word = "Map";
-  }
+  const bool checked = !map.checks.empty();
+  document.verdict = {.agrees = checked ? std::optional(map.agrees()) : std::nullopt,
+                      .headline = headline(map),
+                      .word = checked ? "" : "Map",
+                      .answers = answers_of(map)};
   document.meaning = fmt::format(
       "Contact of the {} by the closed form; a class is that of the observed turns, with "
       "the thresholds below. {}",
       words(map).contacts,
-      map.checks.empty()
-          ? "Nothing was compared: --check-points N recomputes points by Simbody."
-          : "Simbody's model, from the same states, verifies the equations of motion.");
-  document.runs.emplace();
-  document.runs->push_back(settings_section(map));
-  document.runs->push_back(classes_section(map));
-  document.runs->push_back(boundary_section(map));
+      checked ? "Simbody's model, from the same states, verifies the equations of motion."
+              : "Nothing was compared: --check-points N recomputes points by Simbody.");
+  document.runs = {settings_section(map), classes_section(map), boundary_section(map)};
   if (!rigid(map)) document.runs->push_back(states_section(map));
-  if (!map.checks.empty()) document.runs->push_back(checks_section(map));
+  if (checked) document.runs->push_back(checks_section(map));
   document.figures = map_figures(map);
   add_warnings(document, map.all_failed());
   return document;
