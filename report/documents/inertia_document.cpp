@@ -1,23 +1,15 @@
 #include "bentaxis/study/inertia_document.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <map>
-#include <tuple>
-#include <utility>
 
-#include "answers_text.h"
-#include "bentaxis/pump/number.h"
 #include "document_parts.h"
 
 namespace bentaxis::study {
 namespace {
 
-using report::Cell;
 using report::Curves;
 using report::Figure;
+using report::NewSection;
 using report::Values;
 using report::values_of;
 using Names = std::vector<std::string>;
@@ -30,15 +22,14 @@ std::string load_name(bool loaded) { return loaded ? "loaded" : "no load"; }
 
 // Magnitude of a vector of piston 1 over the turn.
 Values magnitude(const ResultTable& table, const Names& names) {
-  Values result(table.rows(), 0.0);
-  for (std::size_t row = 0; row < table.rows(); ++row) {
+  return report::values_at(table.rows(), [&](std::size_t row) {
+    double squares = 0;
     for (const auto& name : names) {
       const double value = table.at(row, table.find(name));
-      result[row] += value * value;
+      squares += value * value;
     }
-    result[row] = std::sqrt(result[row]);
-  }
-  return result;
+    return std::sqrt(squares);
+  });
 }
 
 const ResultTable& analytic_of(const InertiaRun& run, bool real) {
@@ -145,11 +136,9 @@ Figure approach_figure(const InertiaStudy& s) {
       "different Simbody bodies and joints."};
 }
 
-Figure map_figure(const InertiaStudy& s, const std::string& symbol,
-                  const std::vector<Values>& shares) {
-  std::vector<Values> percent = shares;
+Figure map_figure(const InertiaStudy& s, const std::string& symbol, std::vector<Values> percent) {
   for (auto& row : percent)
-    for (double& v : row) v = is_computed(v) ? 100 * v : v;
+    for (double& share : row) share *= 100;
   const bool mass = s.map.axis == MapAxis::mass;
   return {"map_" + symbol, fmt::format("Lumping error of {} over the loaded reaction", symbol), "",
           report::MapFigure{
@@ -168,7 +157,7 @@ Figure map_figure(const InertiaStudy& s, const std::string& symbol,
 
 std::vector<Figure> all_figures(const InertiaStudy& s, Curves& curves) {
   const auto fast = [&](const std::vector<InertiaRun>& runs, bool loaded) -> const InertiaRun& {
-    return *std::find_if(runs.begin(), runs.end(), [&](const InertiaRun& run) {
+    return *std::ranges::find_if(runs, [&](const InertiaRun& run) {
       return run.speed_rpm == s.fastest && run.loaded == loaded;
     });
   };
@@ -199,87 +188,97 @@ std::vector<Figure> all_figures(const InertiaStudy& s, Curves& curves) {
 
 // ---- Tables
 
-report::Table error_table(const std::vector<InertiaRun>& runs, const Names& groups) {
-  report::Table table{
-      {"reaction", "speed, rpm", "load", "error of lumping, analytic", "the same, multibody",
-       "peak of this run", "peak loaded", "error, % of peak loaded"},
-      {}};
+// Of every run, over the peak of the loaded run of its speed.
+std::vector<LumpingError> errors_of(const std::vector<InertiaRun>& runs) {
+  std::vector<LumpingError> errors;
   for (const InertiaRun& run : runs)
-    for (const auto& error : lumping_errors(run, InertiaStudy::loaded(runs, run.speed_rpm)))
-      if (contains(groups, error.group))
-        table.rows.push_back({fmt::format("{} ({})", error.group, error.unit), error.speed_rpm,
-                              load_name(error.loaded), error.analytic, error.multibody, error.peak,
-                              error.loaded_peak, 100 * error.fraction()});
-  return table;
+    append(errors, lumping_errors(run, InertiaStudy::loaded(runs, run.speed_rpm)));
+  return errors;
+}
+
+report::Section error_section(const char* title, const char* text,
+                              const std::vector<InertiaRun>& runs, const Names& groups) {
+  NewSection section(title, text);
+  section.columns("reaction", "speed, rpm", "load", "error of lumping, analytic",
+                  "the same, multibody", "peak of this run", "peak loaded",
+                  "error, % of peak loaded");
+  for (const auto& error : errors_of(runs))
+    if (contains(groups, error.group))
+      section.row(fmt::format("{} ({})", error.group, error.unit), error.speed_rpm,
+                  load_name(error.loaded), error.analytic, error.multibody, error.peak,
+                  error.loaded_peak, 100 * error.fraction());
+  return section;
 }
 
 report::Section causes_section(const InertiaStudy& s) {
-  report::Table table{{"cause", "error of Rs, N", "error of Rc, N"}, {}};
+  NewSection section(
+      "Where the error comes from",
+      "From two masses to the real piston three things change; each is switched alone, without "
+      "load at " +
+          rpm(s.fastest) + ". As vectors the three add up exactly to the total.");
+  section.fact("largest part the three do not explain", "{:.1e} N", s.causes.rest);
+  section.columns("cause", "error of Rs, N", "error of Rc, N");
   for (const ResultTable* cause :
        {&s.causes.centre, &s.causes.transverse, &s.causes.spin, &s.causes.all})
-    table.rows.push_back({cause->name, cause->peak("Rs"), cause->peak("Rc")});
-  return {"Where the error comes from",
-          "From two masses to the real piston three things change; each is switched alone, without "
-          "load at " +
-              rpm(s.fastest) + ". As vectors the three add up exactly to the total.",
-          {{"largest part the three do not explain", fmt::format("{:.1e} N", s.causes.rest)}},
-          std::move(table)};
+    section.row(cause->name, cause->peak("Rs"), cause->peak("Rc"));
+  return section;
 }
 
 report::Section lumping_section(const InertiaStudy& s) {
-  report::Table table{{"lumping", "chi", "error of Rs, N", "error of Rc, N"}, {}};
+  NewSection section("Which lumping is best",
+                     "Remaining error, maximum over the turn, without load at " + rpm(s.fastest) +
+                         ". Three point masses ([piston] inertia = \"dynamically_equivalent\") "
+                         "leave the gyroscopic moment of spin only.");
+  section.columns("lumping", "chi", "error of Rs, N", "error of Rc, N");
   for (const auto& lumping : s.lumpings)
-    table.rows.push_back(
-        {lumping.name, lumping.joint_mass_fraction, lumping.error_rs, lumping.error_rc});
-  report::Lines facts;
-  if (s.masses.exists)
-    facts = {{"mass at A", fmt::format("{:.5g} kg", s.masses.at_joint)},
-             {"mass at the centre", fmt::format("{:.5g} kg", s.masses.at_centre)},
-             {"mass at B", fmt::format("{:.5g} kg", s.masses.at_ring)},
-             {"three real masses would do", s.masses.positive
-                                                ? "yes, all are positive"
-                                                : "no, one is negative; the equations still hold"}};
-  else
-    facts = {{"three point masses", "do not exist: the centre of mass is not between A and B"}};
-  return {"Which lumping is best",
-          "Remaining error, maximum over the turn, without load at " + rpm(s.fastest) +
-              ". Three point masses ([piston] inertia = \"dynamically_equivalent\") leave the "
-              "gyroscopic moment of spin only.",
-          std::move(facts), std::move(table)};
+    section.row(lumping.name, lumping.joint_mass_fraction, lumping.error_rs, lumping.error_rc);
+  if (!s.masses.exists) {
+    section.fact("three point masses", "do not exist: the centre of mass is not between A and B");
+    return section;
+  }
+  for (const auto& [name, mass] : {std::pair{"mass at A", s.masses.at_joint},
+                                   {"mass at the centre", s.masses.at_centre},
+                                   {"mass at B", s.masses.at_ring}})
+    section.fact(name, "{:.5g} kg", mass);
+  section.fact("three real masses would do", s.masses.positive
+                                                 ? "yes, all are positive"
+                                                 : "no, one is negative; the equations still hold");
+  return section;
 }
 
 report::Section approach_section(const InertiaStudy& s) {
-  report::Table table{{"t", "difference of Rs, N", "difference of Rc, N"}, {}};
-  for (const auto& step : s.approach) table.rows.push_back({step.t, step.error_rs, step.error_rc});
-  report::Lines facts = {{"spin", "none: the piston has no axial inertia"}};
-  if (s.spin)
-    facts = {{"spin at the start", rpm(s.spin->spin_rpm)},
-             {"largest change over a turn integrated",
-              fmt::format("{:.1e} rad/s (accuracy {:g} per step)", s.spin->worst_change,
-                          s.spin->accuracy)}};
-  return {"Simbody: from the real piston to the lumped one",
-          "Centre of mass, transverse and axial inertia go to those of the two masses with t.",
-          std::move(facts), std::move(table)};
+  NewSection section(
+      "Simbody: from the real piston to the lumped one",
+      "Centre of mass, transverse and axial inertia go to those of the two masses with t.");
+  section.columns("t", "difference of Rs, N", "difference of Rc, N");
+  for (const auto& step : s.approach) section.row(step.t, step.error_rs, step.error_rc);
+  if (!s.spin) {
+    section.fact("spin", "none: the piston has no axial inertia");
+    return section;
+  }
+  section.fact("spin at the start", rpm(s.spin->spin_rpm));
+  section.fact("largest change over a turn integrated", "{:.1e} rad/s (accuracy {:g} per step)",
+               s.spin->worst_change, s.spin->accuracy);
+  return section;
 }
 
 report::Section cost_section(const InertiaStudy& s) {
+  NewSection section(
+      "What each scene costs",
+      "Real pistons, processor time measured in this run (fastest of three turns). Curves of "
+      "this report are of the one-piston scene, tables of bearings of the full one.");
+  section.fact("largest difference of the models, of peak", "{:.1e}", s.models_apart);
+  section.fact("one-piston scene against full pump, of peak", "{:.1e}", s.scenes_apart);
+  section.fact("pistons in the pump", "{}", s.the_case.pump.geometry.pistons);
+  section.columns("scene", "reactions by", "bodies", "mobilities", "constraint equations",
+                  "microseconds per angle", "times cheaper than the full pump");
   double full = not_computed();
   for (const auto& cost : s.costs)
     if (cost.scene == "full" && cost.method == "multipliers") full = cost.microseconds_per_angle;
-  report::Table table{{"scene", "reactions by", "bodies", "mobilities", "constraint equations",
-                       "microseconds per angle", "times cheaper than the full pump"},
-                      {}};
   for (const auto& cost : s.costs)
-    table.rows.push_back({cost.scene, cost.method, long{cost.bodies}, long{cost.mobilities},
-                          long{cost.equations}, cost.microseconds_per_angle,
-                          full / cost.microseconds_per_angle});
-  return {"What each scene costs",
-          "Real pistons, processor time measured in this run (fastest of three turns). Curves of "
-          "this report are of the one-piston scene, tables of bearings of the full one.",
-          {{"largest difference of the models, of peak", fmt::format("{:.1e}", s.models_apart)},
-           {"one-piston scene against full pump, of peak", fmt::format("{:.1e}", s.scenes_apart)},
-           {"pistons in the pump", std::to_string(s.the_case.pump.geometry.pistons)}},
-          std::move(table)};
+    section.row(cost.scene, cost.method, cost.bodies, cost.mobilities, cost.equations,
+                cost.microseconds_per_angle, full / cost.microseconds_per_angle);
+  return section;
 }
 
 // ---- Printed numbers
@@ -308,8 +307,8 @@ std::map<std::string, LumpingError> worst_errors(const InertiaStudy& s) {
 std::string word(const InertiaStudy& s) {
   if (!s.agrees()) return {};
   const auto worst = worst_errors(s);
-  return std::all_of(worst.begin(), worst.end(),
-                     [](const auto& one) { return one.second.fraction() <= kTwoMassesDo; })
+  return std::ranges::all_of(worst,
+                             [](const auto& one) { return one.second.fraction() <= kTwoMassesDo; })
              ? "Two masses are enough"
              : "Two masses are not enough";
 }
@@ -337,15 +336,15 @@ std::string headline(const InertiaStudy& s) {
                         missed.empty() ? "" : ". They are for the others", largest->group,
                         of_peak(*largest));
   text += fmt::format(". The limit is {:g} %.", 100 * kTwoMassesDo);
-  if (!s.agrees())
-    return (!(s.models_apart <= kInertiaModelsAgree)
-                ? fmt::format("The models differ by {:.1e} of peak (tolerance {:g}). ",
-                              s.models_apart, kInertiaModelsAgree)
-                : fmt::format("The multibody model of one piston differs from that of the full "
-                              "pump by {:.1e} of peak (tolerance {:g}). ",
-                              s.scenes_apart, kInertiaScenesAgree)) +
-           text;
-  return text + fmt::format(" The models agree to {:.1e} of peak.", s.models_apart);
+  if (s.agrees()) return text + fmt::format(" The models agree to {:.1e} of peak.", s.models_apart);
+  const bool models = !(s.models_apart <= kInertiaModelsAgree);
+  return fmt::format("{} by {:.1e} of peak (tolerance {:g}). ",
+                     models ? "The models differ"
+                            : "The multibody model of one piston differs from that of the full "
+                              "pump",
+                     models ? s.models_apart : s.scenes_apart,
+                     models ? kInertiaModelsAgree : kInertiaScenesAgree) +
+         text;
 }
 
 // What makes the error, and which lumping leaves least.
@@ -364,18 +363,15 @@ std::vector<std::string> answers_of(const InertiaStudy& s) {
         largest->peak(group) > c.all.peak(group) ? " before others take some of it away" : "",
         largest->name));
   }
-  if (!s.lumpings.empty()) {
-    const auto& best = *std::min_element(
-        s.lumpings.begin(), s.lumpings.end(), [](const Lumping& a, const Lumping& b) {
-          return std::max(a.error_rs, a.error_rc) < std::max(b.error_rs, b.error_rc);
-        });
-    answers.push_back(fmt::format("Smallest error at {}: {}{}, {:.3g} N in Rs and {:.3g} N in Rc.",
-                                  rpm(s.fastest), best.name,
-                                  is_computed(best.joint_mass_fraction)
-                                      ? fmt::format(" (chi = {:.5g})", best.joint_mass_fraction)
-                                      : "",
-                                  best.error_rs, best.error_rc));
-  }
+  const Lumping* best = report::largest_of(
+      s.lumpings, [](const Lumping& l) { return -std::max(l.error_rs, l.error_rc); });
+  if (best == nullptr) return answers;
+  answers.push_back(fmt::format("Smallest error at {}: {}{}, {:.3g} N in Rs and {:.3g} N in Rc.",
+                                rpm(s.fastest), best->name,
+                                is_computed(best->joint_mass_fraction)
+                                    ? fmt::format(" (chi = {:.5g})", best->joint_mass_fraction)
+                                    : "",
+                                best->error_rs, best->error_rc));
   return answers;
 }
 
@@ -390,55 +386,52 @@ InertiaReport inertia_report(const InertiaStudy& s,
   curves.tables = {{"analytic", {}}, {"multibody", {}}};
   report::Document& document = result.document;
   document = case_document(description, "Lumped or real pistons: " + s.the_case.name, program);
-  document.verdict = report::Verdict{s.agrees(), headline(s), word(s)};
-  document.verdict->tolerance = kInertiaModelsAgree;
-  document.verdict->answers = answers_of(s);
-  document.runs = {{"Error of lumping on a piston's reactions",
+  document.verdict = {.agrees = s.agrees(),
+                      .headline = headline(s),
+                      .word = word(s),
+                      .tolerance = kInertiaModelsAgree,
+                      .answers = answers_of(s)};
+  document.runs = {
+      error_section("Error of lumping on a piston's reactions",
                     "Largest magnitude of two masses - real over the turn. Reactions are linear in "
                     "the inertia forces, so load does not change the error (but for the weight); "
                     "it changes the peak that the error is relative to.",
-                    {},
-                    error_table(s.one_piston, {"Rs", "Rc"})},
-                   {"Error of lumping on bearings, gear and torque",
-                    "Full pump, both models.",
-                    {},
-                    error_table(s.full, {"Rb1", "Rb2", "Rcs", "Rcn", "Td"})},
-                   causes_section(s),
-                   lumping_section(s),
-                   approach_section(s),
-                   cost_section(s)};
+                    s.one_piston, {"Rs", "Rc"}),
+      error_section("Error of lumping on bearings, gear and torque", "Full pump, both models.",
+                    s.full, {"Rb1", "Rb2", "Rcs", "Rcn", "Td"}),
+      causes_section(s),
+      lumping_section(s),
+      approach_section(s),
+      cost_section(s)};
   if (published) document.published = published_table(std::move(*published));
   document.figures = all_figures(s, curves);
   return result;
 }
 
 std::string inertia_curves_csv(const InertiaStudy& s) {
+  const ResultTable& first = s.one_piston.front().analytic_real;
   std::string header = "theta_deg";
-  std::vector<Values> columns;
-  for (const InertiaRun& run : s.one_piston) {
+  std::vector<Values> columns = {first.theta_deg};
+  const auto add = [&](const std::string& name, Values values) {
+    header += "," + name;
+    columns.push_back(std::move(values));
+  };
+  for (const InertiaRun& run : s.one_piston)
     for (const auto& [name, table] : {std::pair{"analytic_lumped", &run.analytic_lumped},
                                       std::pair{"analytic_real", &run.analytic_real},
                                       std::pair{"multibody_lumped", &run.multibody_lumped},
                                       std::pair{"multibody_real", &run.multibody_real}}) {
       const std::string prefix =
-          fmt::format(",{}_{}_{:g}rpm_", name, run.loaded ? "loaded" : "noload", run.speed_rpm);
+          fmt::format("{}_{}_{:g}rpm_", name, run.loaded ? "loaded" : "noload", run.speed_rpm);
       for (const auto* parts : {&kRs, &kRc}) {
-        for (const auto& part : *parts) {
-          header += prefix + part;
-          columns.push_back(values_of(*table, part));
-        }
-        header += prefix + (parts == &kRs ? "Rs_1_magnitude_N" : "Rc_1_magnitude_N");
-        columns.push_back(magnitude(*table, *parts));
+        for (const auto& part : *parts) add(prefix + part, values_of(*table, part));
+        add(prefix + (parts == &kRs ? "Rs_1_magnitude_N" : "Rc_1_magnitude_N"),
+            magnitude(*table, *parts));
       }
     }
-  }
   CsvRows csv(header);
-  const ResultTable& first = s.one_piston.front().analytic_real;
-  for (std::size_t row = 0; row < first.rows(); ++row) {
-    Values numbers = {first.theta_deg[row]};
-    for (const auto& values : columns) numbers.push_back(values[row]);
-    csv.row(numbers);
-  }
+  for (std::size_t row = 0; row < first.rows(); ++row)
+    csv.row(report::each_of(columns, [&](const Values& values) { return values[row]; }));
   return std::move(csv).text();
 }
 
@@ -446,10 +439,9 @@ std::string inertia_errors_csv(const InertiaStudy& s) {
   CsvRows csv(
       "reaction,unit,speed_rpm,load,error_analytic,error_multibody,peak,peak_loaded,"
       "error_over_peak_loaded");
-  for (const InertiaRun& run : s.full)
-    for (const auto& error : lumping_errors(run, InertiaStudy::loaded(s.full, run.speed_rpm)))
-      csv.row(error.group, error.unit, error.speed_rpm, error.loaded ? "loaded" : "no_load",
-              error.analytic, error.multibody, error.peak, error.loaded_peak, error.fraction());
+  for (const auto& error : errors_of(s.full))
+    csv.row(error.group, error.unit, error.speed_rpm, error.loaded ? "loaded" : "no_load",
+            error.analytic, error.multibody, error.peak, error.loaded_peak, error.fraction());
   return std::move(csv).text();
 }
 
@@ -465,10 +457,9 @@ std::string inertia_map_csv(const ErrorMap& map) {
 std::string inertia_text(const InertiaStudy& s) {
   std::string text = report::answers_text(s.the_case.name, headline(s), answers_of(s));
   text += "error of lumping    speed rpm  load      N or Nm   % of loaded peak\n";
-  for (const InertiaRun& run : s.full)
-    for (const auto& error : lumping_errors(run, InertiaStudy::loaded(s.full, run.speed_rpm)))
-      text += fmt::format("{:<20}{:>9g}  {:<8} {:>9.4g}   {:.3g}\n", error.group, error.speed_rpm,
-                          load_name(error.loaded), error.analytic, 100 * error.fraction());
+  for (const auto& error : errors_of(s.full))
+    text += fmt::format("{:<20}{:>9g}  {:<8} {:>9.4g}   {:.3g}\n", error.group, error.speed_rpm,
+                        load_name(error.loaded), error.analytic, 100 * error.fraction());
   for (const PistonInertia inertia : s.full.front().by_inverse_dynamics)
     text += to_string(inertia) +
             " pistons have no inertia about A: their multibody reactions are by inverse dynamics\n";
