@@ -1,12 +1,7 @@
 #include "bentaxis/study/hard_cases_document.h"
 
-#include <fmt/format.h>
+#include <array>
 
-#include <algorithm>
-#include <cmath>
-
-#include "answers_text.h"
-#include "bentaxis/pump/number.h"
 #include "document_parts.h"
 
 namespace bentaxis::study {
@@ -23,14 +18,14 @@ bool misjudged(const HardOutcome& outcome) {
   return ratio && (*ratio > kPredictionFactor || *ratio < 1 / kPredictionFactor);
 }
 
-long misjudged(const HardCaseStudy& study) {
-  return std::count_if(study.runs.begin(), study.runs.end(),
-                       [](const HardCaseRun& run) { return misjudged(run.outcome); });
+std::size_t misjudged(const HardCaseStudy& study) {
+  return report::count_of(study.runs,
+                          [](const HardCaseRun& run) { return misjudged(run.outcome); });
 }
 
-long count(const HardCaseStudy& study, HardVerdict verdict) {
-  return std::count_if(study.runs.begin(), study.runs.end(),
-                       [&](const HardCaseRun& run) { return run.outcome.verdict == verdict; });
+std::size_t count(const HardCaseStudy& study, HardVerdict verdict) {
+  return report::count_of(study.runs,
+                          [&](const auto& run) { return run.outcome.verdict == verdict; });
 }
 
 bool bounded(const HardCaseStudy& study) { return !study.long_run || study.long_run->bounded(); }
@@ -64,50 +59,46 @@ std::vector<report::HardCaseRow> records(const HardCaseStudy& study) {
 
 // One block per group of cases, a row per case.
 std::vector<report::Section> sections(const HardCaseStudy& study) {
-  std::vector<std::string> columns = {"case", "what is hard", "set to"};
-  columns.insert(columns.end(), hard_models().begin(), hard_models().end());
-  columns.emplace_back("message");
-  std::vector<report::Section> blocks;
+  std::vector<report::NewSection> blocks;
   for (std::size_t i = 0; i < study.runs.size(); i += hard_models().size()) {
     const HardCase& hard = study.runs[i].hard;
-    auto block = std::find_if(blocks.begin(), blocks.end(),
-                              [&](const report::Section& b) { return b.title == hard.group; });
-    if (block == blocks.end())
-      block = blocks.insert(
-          block, {hard.group,
-                  "Digits of the worst reaction, its name, and the predicted digits in brackets.",
-                  {},
-                  {columns, {}}});
-    std::vector<report::Cell> row = {hard.name, hard.hard, report::joined(hard.changes, ", ")};
-    std::vector<std::string> messages;
+    auto block = std::ranges::find(blocks, hard.group, &report::Section::title);
+    if (block == blocks.end()) {
+      block = blocks.emplace(
+          block, hard.group,
+          "Digits of the worst reaction, its name, and the predicted digits in brackets.");
+      block->columns("case", "what is hard", "set to", hard_models(), "message");
+    }
+    std::vector<std::string> results, messages;
     for (std::size_t m = 0; m < hard_models().size(); ++m) {
       const HardOutcome& o = study.runs[i + m].outcome;
-      row.emplace_back(o.worst() ? fmt::format("{} {}", cell(o), o.worst()->group) : cell(o));
-      if (!o.message.empty()) messages.push_back(fmt::format("{}: {}", o.model, o.message));
+      results.push_back(o.worst() ? cell(o) + " " + o.worst()->group : cell(o));
+      if (!o.message.empty()) messages.push_back(o.model + ": " + o.message);
     }
-    row.emplace_back(report::joined(messages, "; "));
-    block->table.rows.push_back(std::move(row));
+    block->row(hard.name, hard.hard, joined(hard.changes), results, joined(messages, "; "));
   }
-  return blocks;
+  return {blocks.begin(), blocks.end()};
+}
+
+// Of one turn: constraints and their rate, gear phase, spin, work, reactions.
+std::array<double, 6> errors_of(const LongRun::Turn& t) {
+  return {t.record.position_error, t.record.velocity_error, t.record.gear_phase,
+          t.record.spin_error,     t.record.work_residual,  t.reaction_error};
 }
 
 report::Section section_of(const LongRun& run) {
-  report::Table table{{"turn", "constraint error, m", "its rate, m/s", "gear phase, rad",
-                       "spin error, rad/s", "work lost, J", "reaction error, of peak"},
-                      {}};
-  for (const auto& t : run.shown)
-    table.rows.push_back({long{t.number}, t.record.position_error, t.record.velocity_error,
-                          t.record.gear_phase, t.record.spin_error, t.record.work_residual,
-                          t.reaction_error});
-  return {fmt::format("{} turns integrated", run.turns),
-          fmt::format("Real pistons spinning, accuracy {:g}; worst within the turn, work since the "
-                      "start of {:.4g} J that the loads did. {:.3g} s a turn. Second half over "
-                      "first half: constraint error {:.2g}, reaction error {:.2g}.",
-                      run.accuracy, run.work_of_loads, run.seconds / run.turns,
-                      run.position_error[1] / run.position_error[0],
-                      run.reaction_error[1] / run.reaction_error[0]),
-          {},
-          std::move(table)};
+  report::NewSection section(
+      fmt::format("{} turns integrated", run.turns),
+      fmt::format("Real pistons spinning, accuracy {:g}; worst within the turn, work since the "
+                  "start of {:.4g} J that the loads did. {:.3g} s a turn. Second half over "
+                  "first half: constraint error {:.2g}, reaction error {:.2g}.",
+                  run.accuracy, run.work_of_loads, run.seconds / run.turns,
+                  run.position_error[1] / run.position_error[0],
+                  run.reaction_error[1] / run.reaction_error[0]));
+  section.columns("turn", "constraint error, m", "its rate, m/s", "gear phase, rad",
+                  "spin error, rad/s", "work lost, J", "reaction error, of peak");
+  for (const auto& t : run.shown) section.row(t.number, errors_of(t));
+  return section;
 }
 
 std::string text_of(const LongRun& run) {
@@ -117,10 +108,7 @@ std::string text_of(const LongRun& run) {
       run.turns, run.accuracy, run.seconds / run.turns, "turn", "constraint/m", "rate/(m/s)",
       "phase/rad", "spin/(rad/s)", "work lost/J", "reaction");
   for (const auto& t : run.shown)
-    text +=
-        fmt::format("{:>6} {:>12.1e} {:>12.1e} {:>12.1e} {:>12.1e} {:>12.1e} {:>12.1e}\n", t.number,
-                    t.record.position_error, t.record.velocity_error, t.record.gear_phase,
-                    t.record.spin_error, t.record.work_residual, t.reaction_error);
+    text += fmt::format("{:>6} {:>12.1e}\n", t.number, fmt::join(errors_of(t), " "));
   return text;
 }
 
@@ -133,8 +121,8 @@ bool HardCaseStudy::good() const {
 std::string HardCaseStudy::headline() const {
   std::string text = fmt::format(
       "{} cases, each by {} ways: {} accurate within the predicted loss, {} refused with a "
-      "message, "
-      "{} wrong. Losses above {:g} of peak that were not predicted within a factor of {:g}: {}.",
+      "message, {} wrong. Losses above {:g} of peak that were not predicted within a factor of "
+      "{:g}: {}.",
       runs.size() / hard_models().size(), hard_models().size(),
       count(*this, HardVerdict::as_predicted), count(*this, HardVerdict::refused),
       count(*this, HardVerdict::wrong), kNoticeableLoss, kPredictionFactor, misjudged(*this));
@@ -151,16 +139,15 @@ std::vector<std::string> HardCaseStudy::answers() const {
       sentences.push_back(fmt::format("Wrong: {} by {}: {}.", hard.name, outcome.model,
                                       outcome.message.empty() ? cell(outcome) : outcome.message));
   for (const std::string& model : hard_models()) {
-    const HardCaseRun* worst = nullptr;
-    const auto loss = [](const HardCaseRun& run) { return run.outcome.worst()->measured; };
-    for (const HardCaseRun& run : runs)
-      if (run.outcome.model == model && run.outcome.worst() != nullptr &&
-          (worst == nullptr || loss(run) > loss(*worst)))
-        worst = &run;
-    if (worst != nullptr)
-      sentences.push_back(fmt::format("Fewest digits by {}: {:.1f} of {} in {} ({}).", model,
-                                      digits(loss(*worst)), worst->outcome.worst()->group,
-                                      worst->hard.name, worst->hard.hard));
+    const HardCaseRun* run = report::largest_of(runs, [&](const HardCaseRun& r) {
+      return r.outcome.model == model && r.outcome.worst() ? r.outcome.worst()->measured
+                                                           : not_computed();
+    });
+    if (run == nullptr) continue;
+    const GroupLoss& worst = *run->outcome.worst();
+    sentences.push_back(fmt::format("Fewest digits by {}: {:.1f} of {} in {} ({}).", model,
+                                    digits(worst.measured), worst.group, run->hard.name,
+                                    run->hard.hard));
   }
   return sentences;
 }
@@ -169,9 +156,10 @@ report::Document hard_cases_document(const HardCaseStudy& study, const report::L
   report::Document document;
   document.title = "Hard cases";
   document.program = program;
-  document.verdict =
-      report::Verdict{study.good(), study.headline(), study.good() ? "Holds" : "Fails"};
-  document.verdict->answers = study.answers();
+  document.verdict = {.agrees = study.good(),
+                      .headline = study.headline(),
+                      .word = study.good() ? "Holds" : "Fails",
+                      .answers = study.answers()};
   document.meaning =
       "Digits are -log10 of the largest difference from the 50-digit curve over the peak of the "
       "reaction; predicted are the digits that remain after rounding of inputs and arithmetic "
@@ -189,14 +177,13 @@ std::string hard_cases_csv(const HardCaseStudy& study) {
   std::string text =
       "case,model,expected,verdict,group,loss_over_peak,predicted_over_peak,digits,us_per_angle\n";
   for (const auto& [hard, o] : study.runs) {
-    const GroupLoss* worst = o.worst();
     text += fmt::format("{},{},{},{},", hard.name, o.model, expected(o), to_string(o.verdict));
-    if (worst != nullptr)
-      text += fmt::format("{},{},{},{:.1f},{:.1f}\n", worst->group, number_text(worst->measured),
-                          number_text(worst->predicted), digits(worst->measured),
-                          o.seconds_per_angle * 1e6);
-    else
-      text += ",,,,\n";
+    const GroupLoss* worst = o.worst();
+    text += worst == nullptr
+                ? ",,,,\n"
+                : fmt::format("{},{},{},{:.1f},{:.1f}\n", worst->group,
+                              number_text(worst->measured), number_text(worst->predicted),
+                              digits(worst->measured), o.seconds_per_angle * 1e6);
   }
   return text;
 }
