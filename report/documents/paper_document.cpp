@@ -1,11 +1,4 @@
 // The paper's figures as a report, as CSV and as text.
-#include <fmt/format.h>
-
-#include <cmath>
-
-#include "answers_text.h"
-#include "bentaxis/pump/number.h"
-#include "bentaxis/pump/text.h"
 #include "bentaxis/study/paper_figures.h"
 #include "document_parts.h"
 #include "paper_drawings.h"
@@ -74,20 +67,11 @@ compare::Difference other_model(const DrawnPanel& p) {
   return worst;
 }
 
-struct PanelCount {
-  int known = 0, inside = 0, unknown = 0;
-};
-PanelCount count(const PaperStudy& s) {
-  PanelCount c;
-  for (const DrawnPanel& p : s.panels) {
-    ++(p.known() ? c.known : c.unknown);
-    c.inside += p.inside();
-  }
-  return c;
-}
-
 std::string headline(const PaperStudy& s) {
-  const PanelCount c = count(s);
+  const std::size_t known =
+      report::count_of(s.panels, [](const DrawnPanel& p) { return p.known(); });
+  const std::size_t inside =
+      report::count_of(s.panels, [](const DrawnPanel& p) { return p.inside(); });
   std::vector<std::string> outside;
   compare::Difference worst;
   for (const DrawnPanel& p : s.panels) {
@@ -97,8 +81,8 @@ std::string headline(const PaperStudy& s) {
   return fmt::format(
       "{} of {} panels with a known axis contain our curves{}; {} axes are unknown; "
       "drawings have none. At the same assumptions the models differ by up to {} of peak.",
-      c.inside, c.known, outside.empty() ? "" : " (outside: " + joined(outside, "; ") + ")",
-      c.unknown, worst.share_text());
+      inside, known, outside.empty() ? "" : " (outside: " + joined(outside, "; ") + ")",
+      s.panels.size() - known, worst.share_text());
 }
 
 // Each curve that leaves its axis, and where the numbers printed with them stand.
@@ -120,9 +104,14 @@ std::vector<std::string> answers_of(const PaperStudy& s) {
 // ---- Tables
 
 report::Section figures_section(const PaperStudy& s) {
-  report::Table table{{"figure", "shows", "condition", "printed axis", "ours", "verdict",
-                       "other model, of peak", "remarks"},
-                      {}};
+  report::NewSection section(
+      "The figures",
+      "The curves are not available: an axis is a window for the curve; a curve inside it need not "
+      "be the printed one. Most axes of reactions at rated pressure were used to infer the "
+      "geometry of this pump, which is not published: being inside them is no evidence "
+      "(docs/limits.md).");
+  section.columns("figure", "shows", "condition", "printed axis", "ours", "verdict",
+                  "other model, of peak", "remarks");
   for (const PaperFigure& figure : s.list.figures) {
     for (const DrawnPanel& p : s.panels) {
       if (p.figure.id() != figure.id()) continue;
@@ -130,47 +119,38 @@ report::Section figures_section(const PaperStudy& s) {
       if (!remarks.empty() && !p.panel.outside.empty()) remarks += ": " + p.panel.outside;
       if (!p.panel.y.why.empty()) remarks += (remarks.empty() ? "" : "; ") + p.panel.y.why;
       const compare::Difference differs = other_model(p);
-      table.rows.push_back({figure.name(p.panel), figure.shows, names_of_conditions(p),
-                            p.panel.y.short_text(), range_text(p), verdict(p),
-                            differs.known() ? Cell(differs.share()) : Cell(), remarks});
+      section.row(figure.name(p.panel), figure.shows, names_of_conditions(p),
+                  p.panel.y.short_text(), range_text(p), verdict(p),
+                  differs.known() ? differs.share() : not_computed(), remarks);
     }
     for (const PaperTurn& turn : s.turns)
       if (turn.figure.id() == figure.id())
-        table.rows.push_back({figure.name(), figure.shows, figure.condition, "none: a drawing",
-                              Cell(), "drawn", Cell(), figure.note});
+        section.row(figure.name(), figure.shows, figure.condition, "none: a drawing", Cell(),
+                    "drawn", Cell(), figure.note);
   }
-  report::Section section{"The figures",
-                          "The curves are not available: an axis is a window for the curve; a "
-                          "curve inside it need not be the printed one. Most axes of reactions at "
-                          "rated pressure were used to infer the geometry of this pump, which is "
-                          "not published: being inside them is no evidence (docs/limits.md).",
-                          {},
-                          std::move(table)};
   for (const auto& of : s.list.cases)
-    section.facts.emplace_back(of.condition,
-                               of.inertia_alone_at_rpm ? of.file + ", inertia alone" : of.file);
+    section.fact(of.condition, of.inertia_alone_at_rpm ? of.file + ", inertia alone" : of.file);
   for (const auto& [figures, reason] : s.list.left_out)
-    section.facts.emplace_back("left out: Fig. " + figures, reason);
+    section.fact("left out: Fig. " + figures, reason);
   return section;
 }
 
 report::Section numbers_section(const PaperStudy& s) {
-  report::Table table{
-      {"figure", "quantity", "printed", "condition", "analytic", "multibody", "verdict", "status"},
-      {}};
+  report::NewSection section(
+      "Numbers printed with them",
+      "Numbers that the paper states about these figures, computed from the same cases. Only "
+      "predicted rows test the models.");
+  section.columns("figure", "quantity", "printed", "condition", "analytic", "multibody", "verdict",
+                  "status");
   for (const PaperNumber& number : s.numbers) {
     const compare::PublishedRow& row = number.row;
     const auto value = [&](std::size_t model) {
       return row.values[model] ? Cell(compare::text_of(*row.values[model])) : Cell();
     };
-    table.rows.push_back({number.figures, row.number.quantity, row.printed, row.at, value(0),
-                          value(1), compare::to_string(row.verdict), row.number.status});
+    section.row(number.figures, row.number.quantity, row.printed, row.at, value(0), value(1),
+                compare::to_string(row.verdict), row.number.status);
   }
-  return {"Numbers printed with them",
-          "Numbers that the paper states about these figures, computed from the same cases. Only "
-          "predicted rows test the models.",
-          {},
-          std::move(table)};
+  return section;
 }
 
 // ---- Figures
@@ -216,8 +196,7 @@ report::Document paper_document(const PaperStudy& s, const report::Lines& progra
                                 const CaseDescription& description) {
   report::Document document =
       case_document(description, "The paper's figures: " + s.list.numbers.name, program);
-  document.verdict = report::Verdict{std::nullopt, headline(s)};
-  document.verdict->answers = answers_of(s);
+  document.verdict = {.agrees = std::nullopt, .headline = headline(s), .answers = answers_of(s)};
   document.runs = {figures_section(s), numbers_section(s)};
   document.figures.emplace();
   for (const PaperFigure& figure : s.list.figures) {
