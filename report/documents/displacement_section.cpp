@@ -1,12 +1,6 @@
 #include "bentaxis/study/displacement_section.h"
 
-#include <fmt/format.h>
-
-#include <cmath>
-
 #include "bentaxis/pump/fixed_text.h"
-#include "bentaxis/pump/number.h"
-#include "bentaxis/pump/units.h"
 #include "bentaxis/study/failed_points.h"
 #include "document_parts.h"
 
@@ -40,12 +34,8 @@ std::string places_above(const std::vector<FlowPoint>& points, const DerivedDisp
   return text;
 }
 
-report::Cell percent(double share) {
-  return is_computed(share) ? report::Cell(100 * share) : report::Cell();
-}
-
 report::Section methods_section(const DisplacementStudy& study) {
-  report::Section section{
+  report::NewSection section(
       "Derived displacement",
       "The displacement as a test rig derives it from the flows of this pump, against the "
       "geometric displacement of the model. ISO 8426: flow over speed at zero pressure "
@@ -54,59 +44,51 @@ report::Section methods_section(const DisplacementStudy& study) {
       "of q = V n - k p, all points at once. Zero-pressure line: flow at zero pressure difference "
       "at each speed, then V of q = V n. Bias: derived less geometric, of the geometric. The flow "
       "is read at delivery pressure, as ISO 4409 defines the volumetric efficiency, or in the "
-      "low-pressure line. Efficiency: q / (n V); of a motor n V / q.",
-      {{"geometric displacement", fmt::format("{:.6g} cm3", study.geometric / kCubicCentimetre)},
-       {"points", fmt::format("{} of {} computed", study.meters.at(0).points.size(), study.asked)}},
-      {{"method", "flow read", "displacement, cm3", "bias, %", "points above 100 %",
-        "highest efficiency, %", "at speed, rpm", "at delivery, bar"},
-       {}}};
+      "low-pressure line. Efficiency: q / (n V); of a motor n V / q.");
+  section.fact("geometric displacement", "{:.6g} cm3", study.geometric / kCubicCentimetre);
+  section.fact("points", "{} of {} computed", study.meters.at(0).points.size(), study.asked);
+  section.columns("method", "flow read", "displacement, cm3", "bias, %", "points above 100 %",
+                  "highest efficiency, %", "at speed, rpm", "at delivery, bar");
   for (const MeteredDisplacement& meter : study.meters)
     for (const DerivedDisplacement& derived : meter.derived) {
-      auto& rows = section.table.rows;
-      rows.push_back({name_of(derived.method), meter.meter});
+      const std::string method(name_of(derived.method));
       if (is_computed(derived.volume)) {
         const FlowPoint& highest = meter.points[derived.highest];
-        report::append(rows.back(),
-                       std::vector<report::Cell>{derived.volume / kCubicCentimetre,
-                                                 fixed_text(100 * derived.bias, 3, true),
-                                                 static_cast<long>(derived.above_one),
-                                                 percent(derived.efficiency[derived.highest]),
-                                                 speed_rpm(highest), delivery_bar(highest)});
+        section.row(method, meter.meter, derived.volume / kCubicCentimetre, 100 * derived.bias,
+                    derived.above_one, 100 * derived.efficiency[derived.highest],
+                    speed_rpm(highest), delivery_bar(highest));
       } else {
-        section.facts.emplace_back(std::string(name_of(derived.method)) + ", " + meter.meter,
-                                   "not determined: " + derived.reason);
+        section.row(method, meter.meter);
+        section.fact(method + ", " + meter.meter, "not determined: " + derived.reason);
       }
-      rows.back().resize(section.table.columns.size());
       if (derived.above_one > 0)
-        section.facts.emplace_back(
-            fmt::format("above 100 % by {}, {}", name_of(derived.method), meter.meter),
-            places_above(meter.points, derived));
+        section.fact("above 100 % by " + method + ", " + meter.meter,
+                     places_above(meter.points, derived));
     }
   return section;
 }
 
 report::Section points_section(const DisplacementStudy& study) {
   const MeteredDisplacement& meter = study.meters.at(0);
-  report::Section section{
+  report::NewSection section(
       "Volumetric efficiency by derived displacement",
       "Each point of the test, flow at delivery pressure: the efficiency by the geometric "
       "displacement and by each derived one. A value above 100 % comes from a derived "
-      "displacement that is too small, not from the pump.",
-      {},
-      {{"speed, rpm", "delivery, bar", "flow, l/min", "geometric, %"}, {}}};
-  for (const DerivedDisplacement& derived : meter.derived)
-    section.table.columns.push_back(std::string(name_of(derived.method)) + ", %");
+      "displacement that is too small, not from the pump.");
+  section.columns("speed, rpm", "delivery, bar", "flow, l/min", "geometric, %",
+                  report::each_of(meter.derived, [](const DerivedDisplacement& derived) {
+                    return std::string(name_of(derived.method)) + ", %";
+                  }));
   for (std::size_t i = 0; i < meter.points.size(); ++i) {
     const FlowPoint& point = meter.points[i];
-    std::vector<report::Cell> row = {
-        speed_rpm(point), delivery_bar(point), point.flow / kLitrePerMinute,
-        percent(volumetric_efficiency(study.geometric, point, study.motor))};
-    for (const DerivedDisplacement& derived : meter.derived)
-      row.push_back(derived.efficiency.empty() ? report::Cell() : percent(derived.efficiency[i]));
-    section.table.rows.push_back(std::move(row));
+    section.row(speed_rpm(point), delivery_bar(point), point.flow / kLitrePerMinute,
+                100 * volumetric_efficiency(study.geometric, point, study.motor),
+                report::each_of(meter.derived, [&](const DerivedDisplacement& derived) {
+                  return derived.efficiency.empty() ? not_computed() : 100 * derived.efficiency[i];
+                }));
   }
   for (const FailedPoint& failed : study.failed)
-    section.facts.emplace_back(failed.point + ": not computed", failed.reason);
+    section.fact(failed.point + ": not computed", failed.reason);
   return section;
 }
 
@@ -121,8 +103,7 @@ report::Figure flow_figure(const DisplacementStudy& study) {
     if (figure.series.empty() || figure.series.back().label != label)
       figure.series.push_back({label, {}, {}});
     const double bar = point.difference / kPascalPerBar;
-    figure.series.back().x.push_back(bar);
-    figure.series.back().y.push_back(point.flow / point.speed / kCubicCentimetre);
+    figure.series.back().add(bar, point.flow / point.speed / kCubicCentimetre);
     greatest = std::max(greatest, bar);
   }
   const double geometric = study.geometric / kCubicCentimetre;
@@ -134,13 +115,10 @@ report::Figure flow_figure(const DisplacementStudy& study) {
 // Bias of ISO 8426 over the speed of its test, and of the others.
 report::Figure bias_figure(const DisplacementStudy& study) {
   report::XyFigure figure{{"speed of the test", "rpm"}, {"bias of the displacement", "%"}, {}};
-  const auto percent_of = [&](double volume) { return 100 * (volume / study.geometric - 1); };
   for (const MeteredDisplacement& meter : study.meters) {
     report::XySeries series{"ISO 8426 at this speed, flow " + meter.meter, {}, {}};
-    for (const auto& [speed, volume] : meter.iso_by_speed) {
-      series.x.push_back(speed / kRpm);
-      series.y.push_back(percent_of(volume));
-    }
+    for (const auto& [speed, volume] : meter.iso_by_speed)
+      series.add(speed / kRpm, 100 * (volume / study.geometric - 1));
     figure.series.push_back(std::move(series));
   }
   const MeteredDisplacement& meter = study.meters.at(0);

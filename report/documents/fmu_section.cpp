@@ -1,9 +1,5 @@
 #include "fmu_section.h"
 
-#include <fmt/format.h>
-
-#include "bentaxis/pump/number.h"
-#include "bentaxis/pump/text.h"
 #include "document_parts.h"
 
 namespace bentaxis::study {
@@ -39,38 +35,34 @@ std::string drive_in_words(const UnitCoupling& coupling) {
 report::Section coupling_section(const SimulationResult& r) {
   const UnitCoupling& coupling = *r.choice.unit;
   const fmu::UnitDescription& unit = coupling.unit().description();
-  report::Section section{
+  report::NewSection section(
       "Coupling to an FMU",
       "A Functional Mock-up Unit acts on the pump: it receives values of the pump at every "
       "communication point, and its outputs are held until the next. Each model has its own "
       "instance. The change is the difference from a run with half the communication step; because "
       "the error is proportional to the step, twice the change is the estimated error of the "
-      "results shown.",
-      {{"FMU", fmt::format("{}: {}, FMI {}.0{}", coupling.unit().file().filename().string(),
-                           unit.model_name, unit.version,
-                           unit.tool.empty() ? "" : ", made by " + unit.tool)},
-       {"communication step", fmt::format("{:.6g} s", coupling.step())},
-       {"what turns the shaft", drive_in_words(coupling)}},
-      {{"group", "unit", "peak", "change at half the step, of peak", "at, s",
-        "estimated error, of peak"},
-       {}}};
+      "results shown.");
+  section.fact("FMU", "{}: {}, FMI {}.0{}", coupling.unit().file().filename().string(),
+               unit.model_name, unit.version, unit.tool.empty() ? "" : ", made by " + unit.tool);
+  section.fact("communication step", "{:.6g} s", coupling.step());
+  section.fact("what turns the shaft", drive_in_words(coupling));
+  section.columns("group", "unit", "peak", "change at half the step, of peak", "at, s",
+                  "estimated error, of peak");
   for (const auto& [variable, value] : coupling.parameters())
-    section.facts.emplace_back("parameter " + variable.name,
-                               number_text(value) + unit_after(variable.unit));
+    section.fact("parameter " + variable.name, number_text(value) + unit_after(variable.unit));
   int number = 0;
   for (const Connection& c : coupling.connections())
-    section.facts.emplace_back(fmt::format("connection {}", ++number), arrow(c));
+    section.fact(fmt::format("connection {}", ++number), arrow(c));
   if (const auto loose = coupling.loose_inputs(); !loose.empty())
-    section.facts.emplace_back("inputs of the FMU that keep their start values",
-                               report::joined(loose));
+    section.fact("inputs of the FMU that keep their start values", joined(loose));
   if (const auto loose = coupling.loose_outputs(); !loose.empty())
-    section.facts.emplace_back("outputs of the FMU that are not used", report::joined(loose));
+    section.fact("outputs of the FMU that are not used", joined(loose));
   const std::vector<std::string> said = coupling.log();
   for (std::size_t i = 0; i < said.size() && i < kMaxLines; ++i)
-    section.facts.emplace_back("message of the FMU", said[i]);
+    section.fact("message of the FMU", said[i]);
   for (const CouplingChange& change : r.coupling)
-    section.table.rows.push_back(
-        {change.group, change.unit, change.peak, change.change, change.time_s, change.error()});
+    section.row(change.group, change.unit, change.peak, change.change, change.time_s,
+                change.error());
   return section;
 }
 

@@ -1,8 +1,5 @@
 #include "bentaxis/designs/timing_advice_section.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include "document_parts.h"
 
 namespace bentaxis::designs {
@@ -21,29 +18,25 @@ std::vector<std::string> advice_texts(const TimingStudy& study) {
 
 void add_advice(report::Document& document, const TimingStudy& study) {
   if (document.verdict) report::append(document.verdict->answers, advice_texts(study));
-  report::Section section{
+  report::NewSection section(
       "What to change in the timing",
       "Each quantity that exceeds its limit, with the smallest change of one key that brings it "
       "within the limit without exceeding another limit. The pump is computed again for each "
       "change; where there is no such change, the one that helps most is given. Several keys at "
-      "once: bentaxis optimise.",
-      {{"trials", fmt::format("{}", study.trials)},
-       {"that could not be computed", fmt::format("{}", study.failed)}},
-      {{"verdict", "key", "from", "to", "value before", "value after", "unit", "within its limit",
-        "volumetric efficiency, %", "then exceeded"},
-       {}}};
-  for (const TimingAdvice& advice : study.advice) {
-    if (!advice.change) {
-      section.table.rows.push_back({advice.row.quantity, "none helps"});
-      section.table.rows.back().resize(section.table.columns.size());
-      continue;
-    }
-    const TimingChange& c = *advice.change;
-    section.table.rows.push_back(
-        {advice.row.quantity, c.variable.name(), c.from, c.to, c.value_before, c.value_after,
-         advice.row.unit, c.within ? "yes" : "no", c.efficiency_change, report::joined(c.worse)});
+      "once: bentaxis optimise.");
+  section.fact("trials", "{}", study.trials);
+  section.fact("that could not be computed", "{}", study.failed);
+  section.columns("verdict", "key", "from", "to", "value before", "value after", "unit",
+                  "within its limit", "volumetric efficiency, %", "then exceeded");
+  for (const auto& [row, change] : study.advice) {
+    if (change)
+      section.row(row.quantity, change->variable.name(), change->from, change->to,
+                  change->value_before, change->value_after, row.unit,
+                  change->within ? "yes" : "no", change->efficiency_change, joined(change->worse));
+    else
+      section.row(row.quantity, "none helps");
   }
-  report::append(document.runs, std::move(section));
+  report::append<report::Section>(document.runs, std::move(section));
 }
 
 }  // namespace bentaxis::designs
