@@ -1,12 +1,6 @@
 #include "bentaxis/designs/life_document.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "bentaxis/files/csv.h"
-#include "bentaxis/pump/number.h"
 #include "bentaxis/study/failed_points.h"
 #include "document_parts.h"
 
@@ -77,28 +71,26 @@ std::string balls_text(const LifeStudy& s, Bearing bearing) {
 }
 
 report::Section bearings_section(const LifeStudy& s) {
-  report::Section section{
+  report::NewSection section(
       "Bearings",
       "Rating life after ISO 281: 90 % of the bearings last longer. P_m: the constant equivalent "
       "load with the same life. No factor for lubrication, cleanliness or reliability (a_ISO = a_1 "
-      "= 1).",
-      {{"both together, million revolutions", rounded_text(s.analytic.life.revolutions)},
-       {"both together", hours_text(s.analytic.life.hours)},
-       {"mean speed", fmt::format("{:.6g} rpm", s.analytic.life.mean_speed_rpm)},
-       {"largest difference of the models",
-        fmt::format("{:.1e} of the largest load", s.models_apart())}},
-      {{"bearing", "C, N", "C0, N", "P_m, N", "P_m by Simbody, N", "C / P_m",
-        "L10, million revolutions", "L10h, h", "static safety C0 / P0"},
-       {}}};
+      "= 1).");
+  section.fact("both together, million revolutions", rounded_text(s.analytic.life.revolutions));
+  section.fact("both together", hours_text(s.analytic.life.hours));
+  section.fact("mean speed", "{:.6g} rpm", s.analytic.life.mean_speed_rpm);
+  section.fact("largest difference of the models", "{:.1e} of the largest load", s.models_apart());
+  section.columns("bearing", "C, N", "C0, N", "P_m, N", "P_m by Simbody, N", "C / P_m",
+                  "L10, million revolutions", "L10h, h", "static safety C0 / P0");
   for (const Bearing bearing : study::kBearings) {
     const BearingRating& rating = rating_of(s.the_case, bearing);
     const BearingLife& life = s.analytic.life.of(bearing);
     if (is_computed(life.reference_revolutions))
-      section.facts.emplace_back(name_of(s.the_case, bearing), balls_text(s, bearing));
-    section.table.rows.push_back(
-        {name_of(s.the_case, bearing), rating.dynamic_rating, rating.static_rating, life.mean_load,
-         s.multibody.life.of(bearing).mean_load, rating.dynamic_rating / life.mean_load,
-         life.revolutions, life.hours, life.static_safety});
+      section.fact(name_of(s.the_case, bearing), balls_text(s, bearing));
+    section.row(name_of(s.the_case, bearing), rating.dynamic_rating, rating.static_rating,
+                life.mean_load, s.multibody.life.of(bearing).mean_load,
+                rating.dynamic_rating / life.mean_load, life.revolutions, life.hours,
+                life.static_safety);
   }
   return section;
 }
@@ -111,30 +103,28 @@ double load_of(const Case& the_case, const LifePoint& point, Bearing bearing) {
 }
 
 report::Section duty_section(const LifeStudy& s) {
-  report::Section section{"Duty cycle",
-                          "Loads count by revolutions, time at standstill by the hours only. Life: "
-                          "the share of the life that each row consumes.",
-                          {},
-                          {{"row", "time, %", "revolutions, %"}, {}}};
-  if (!s.duty.file.empty()) section.facts.emplace_back("file", s.duty.file.filename().string());
-  auto& columns = section.table.columns;
-  for (const Variable& v : s.duty.variables)
-    columns.push_back(v.name() + (v.unit().empty() ? "" : ", " + v.unit()));
-  for (const Bearing bearing : study::kBearings) {
-    columns.push_back(to_string(bearing) + " P_m, N");
-    columns.push_back(to_string(bearing) + " life, %");
-  }
+  report::NewSection section(
+      "Duty cycle",
+      "Loads count by revolutions, time at standstill by the hours only. Life: the share of the "
+      "life that each row consumes.");
+  if (!s.duty.file.empty()) section.fact("file", s.duty.file.filename().string());
+  section.columns("row", "time, %", "revolutions, %",
+                  report::each_of(s.duty.variables, [](const Variable& v) {
+                    return v.name() + (v.unit().empty() ? "" : ", " + v.unit());
+                  }));
+  for (const Bearing bearing : study::kBearings)
+    section.columns(to_string(bearing) + " P_m, N", to_string(bearing) + " life, %");
   const study::DutyShares shares = study::duty_shares(s.analytic.points);
   for (std::size_t row = 0; row < s.duty.rows.size(); ++row) {
-    std::vector<report::Cell> cells = {static_cast<long>(s.duty.rows[row].number),
-                                       100 * shares.time[row], 100 * shares.revolutions[row]};
+    report::Row values;
     for (std::size_t i = 0; i < s.duty.variables.size(); ++i)
-      cells.emplace_back(s.duty.variables[i].text(s.duty.rows[row].values[i]));
+      values.emplace_back(s.duty.variables[i].text(s.duty.rows[row].values[i]));
     for (const Bearing bearing : study::kBearings) {
-      cells.emplace_back(load_of(s.the_case, s.analytic.points[row], bearing));
-      cells.emplace_back(100 * s.analytic.life.of(bearing).life_share[row]);
+      values.emplace_back(load_of(s.the_case, s.analytic.points[row], bearing));
+      values.emplace_back(100 * s.analytic.life.of(bearing).life_share[row]);
     }
-    section.table.rows.push_back(std::move(cells));
+    section.row(s.duty.rows[row].number, 100 * shares.time[row], 100 * shares.revolutions[row],
+                values);
   }
   return section;
 }
@@ -168,8 +158,7 @@ std::vector<std::string> answers_of(const LifeStudy& s) {
                   hours_text(life.of(first).hours), hours_text(life.hours))};
   const std::vector<double>& shares = life.of(first).life_share;
   if (s.duty.rows.size() > 1 && shares.size() == s.duty.rows.size()) {
-    const auto row =
-        static_cast<std::size_t>(std::max_element(shares.begin(), shares.end()) - shares.begin());
+    const auto row = static_cast<std::size_t>(std::ranges::max_element(shares) - shares.begin());
     const study::DutyShares duty = study::duty_shares(s.analytic.points);
     answers.push_back(fmt::format(
         "Most of its life is consumed by {}: {:.3g} % of its life in {:.3g} % of the time.",
@@ -200,7 +189,7 @@ std::size_t hardest_row(const LifeStudy& s) {
   const bool tapered =
       life.of(Bearing::tapered).revolutions <= life.of(Bearing::cylindrical).revolutions;
   const auto& shares = life.of(tapered ? Bearing::tapered : Bearing::cylindrical).life_share;
-  return static_cast<std::size_t>(std::max_element(shares.begin(), shares.end()) - shares.begin());
+  return static_cast<std::size_t>(std::ranges::max_element(shares) - shares.begin());
 }
 
 // A bearing's loads over the turn of one row, by both models.
@@ -244,15 +233,14 @@ report::Figure spectrum_figure(const LifeStudy& s) {
       for (const double load : loads)
         spectrum.emplace_back(load, shares.revolutions[row] / static_cast<double>(loads.size()));
     }
-    std::sort(spectrum.begin(), spectrum.end(), std::greater<>());
+    std::ranges::sort(spectrum, std::greater<>());
     report::XySeries series{to_string(bearing), {0}, {spectrum.front().first}};
     double above = 0, shown = 0;
     for (std::size_t k = 0; k < spectrum.size(); ++k) {
       above += 100 * spectrum[k].second;
       if (above - shown < 100.0 / kMaxPoints && k + 1 < spectrum.size()) continue;
       shown = above;
-      series.x.push_back(above);
-      series.y.push_back(spectrum[k].first);
+      series.add(above, spectrum[k].first);
     }
     plot.series.push_back(std::move(series));
     const double mean = s.analytic.life.of(bearing).mean_load;
@@ -269,9 +257,10 @@ report::Document life_document(const LifeStudy& s, const report::Lines& program,
                                const study::CaseDescription& description) {
   report::Document document =
       study::case_document(description, s.the_case.name + ": life of the bearings", program);
-  document.verdict = report::Verdict{s.agrees(), headline(s)};
-  document.verdict->answers = answers_of(s);
-  document.verdict->not_valid = not_valid_of(s.analytic.life);
+  document.verdict = {.agrees = s.agrees(),
+                      .headline = headline(s),
+                      .not_valid = not_valid_of(s.analytic.life),
+                      .answers = answers_of(s)};
   document.meaning = agreement_text(s) +
                      " The rating life includes only fatigue of the rolling contacts under these "
                      "loads; it is as reliable as the ratings and loads.";
