@@ -1,14 +1,7 @@
 #include "bentaxis/study/fig34_document.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <functional>
 
-#include "answers_text.h"
-#include "bentaxis/pump/number.h"
-#include "bentaxis/pump/units.h"
 #include "document_parts.h"
 
 namespace bentaxis::study {
@@ -67,6 +60,13 @@ Count count(const Fig34Study& s, const std::function<bool(const Fig34Point&)>& w
   return c;
 }
 
+Count count(const Fig34Study& s, bool drag) {
+  return count(s, [&](const Fig34Point& p) { return p.drag == drag; });
+}
+Count count(const Fig34Study& s, bool drag, const Parameter& of, double value) {
+  return count(s, [&](const Fig34Point& p) { return p.drag == drag && p.*of.member == value; });
+}
+
 std::string drag_name(bool drag) { return drag ? "with Cc" : "without Cc"; }
 
 /// Values, and pairs of values, none of whose laws stays inside and reverses; pairs only where
@@ -83,14 +83,13 @@ Lines ruled_out(const Fig34Study& s, bool drag) {
   std::vector<Value> left;
   for (const Parameter& of : parameters())
     for (const double value : values_of(s, of)) {
-      const Value v{&of, value};
-      const Count c = count(s, [&](const Fig34Point& p) { return p.drag == drag && has(p, v); });
+      const Count c = count(s, drag, of, value);
       if (c.both == 0)
         lines.push_back(
             fmt::format("{}: {} of {} laws leave the axes, {} do not reverse in every pitch",
                         value_text(of, value), c.all - c.inside, c.all, c.all - c.reverses));
       else
-        left.push_back(v);
+        left.push_back({&of, value});
     }
   for (std::size_t i = 0; i < left.size(); ++i)
     for (std::size_t j = i + 1; j < left.size(); ++j) {
@@ -112,21 +111,40 @@ std::string range_text(const Fig34Curve& curve) {
 
 bool has_drag(const Fig34Study& s) { return s.the_case.pump.friction.block_viscous > 0; }
 
-Count count(const Fig34Study& s, bool drag) {
-  return count(s, [&](const Fig34Point& p) { return p.drag == drag; });
+// Without the drag on the block, and with it where there is any.
+std::vector<bool> drags_of(const Fig34Study& s) {
+  return has_drag(s) ? std::vector{false, true} : std::vector{false};
+}
+
+// The motion of the laws with or without drag.
+std::vector<const Fig34Curve*> curves_of(const Fig34Study& s, bool drag) {
+  std::vector<const Fig34Curve*> curves;
+  for (std::size_t i = 0; i < s.points.size(); ++i)
+    if (s.points[i].drag == drag) curves.push_back(&s.curves[i]);
+  return curves;
+}
+
+// Of every parameter those that some law has which does both: "exponent 1, 1.5; backlash 10 um".
+std::string possible_values(const Fig34Study& s, bool drag) {
+  return joined(parameters(), "; ", [&](const Parameter& of) {
+    Lines values;
+    for (const double value : values_of(s, of))
+      if (count(s, drag, of, value).both > 0) values.push_back(number_of(of, value));
+    return of.name + " " + joined(values) + of.unit;
+  });
 }
 
 Lines about(const Fig34Study& s, bool drag) {
   const Count c = count(s, drag);
+  const std::vector<const Fig34Curve*> curves = curves_of(s, drag);
   const double pitch = 360.0 / s.the_case.pump.geometry.pistons;
   Lines lines = {fmt::format(
       "Of {} contact laws {} stay within {:g} N, {} change the sign in every {:g} deg, {} do both.",
       c.all, c.inside, kFig34Axes, c.reverses, pitch, c.both)};
   const auto rigid = drag ? s.rigid_with_drag.sign_changes : s.rigid.sign_changes;
-  int as_rigid = 0;
-  for (std::size_t i = 0; i < s.points.size(); ++i)
-    if (s.points[i].drag == drag && s.curves[i].done() && s.curves[i].sign_changes == rigid)
-      ++as_rigid;
+  const std::size_t as_rigid = report::count_of(curves, [&](const Fig34Curve* curve) {
+    return curve->done() && curve->sign_changes == rigid;
+  });
   lines.push_back(rigid == 0 ? fmt::format("{} never change sign, as rigid teeth.", as_rigid)
                              : fmt::format("{} change it as often as rigid teeth, {:g} times a "
                                            "turn.",
@@ -134,24 +152,23 @@ Lines about(const Fig34Study& s, bool drag) {
   if (c.failed > 0) lines.push_back(fmt::format("{} could not be simulated.", c.failed));
   if (c.unsettled > 0) {
     double spread = 0;
-    for (std::size_t i = 0; i < s.points.size(); ++i)
-      if (s.points[i].drag == drag) spread = std::max(spread, s.curves[i].largest_over.spread());
+    for (const Fig34Curve* curve : curves) spread = std::max(spread, curve->largest_over.spread());
     lines.push_back(fmt::format(
         "The motion of {} laws does not repeat: their largest force differs between {} windows of "
         "{} turns by up to {:.0f} %. Longer runs can exceed the forces stated for them.",
         c.unsettled, s.options.windows, s.options.turns, 100 * spread));
   }
-  double least_apart = 1, most_apart = 0, least = HUGE_VAL, greatest = 0;
-  for (std::size_t i = 0; i < s.points.size(); ++i) {
-    if (s.points[i].drag != drag || !s.curves[i].inside() || !s.curves[i].reverses()) continue;
-    least_apart = std::min(least_apart, s.curves[i].apart_over.minimum);
-    most_apart = std::max(most_apart, s.curves[i].apart_over.maximum);
-    least = std::min(least, s.curves[i].largest_over.minimum);
-    greatest = std::max(greatest, s.curves[i].largest_over.maximum);
-  }
   if (c.both == 0) {
     lines.emplace_back("So none of them can be the printed curve.");
     return lines;
+  }
+  double least_apart = 1, most_apart = 0, least = HUGE_VAL, greatest = 0;
+  for (const Fig34Curve* curve : curves) {
+    if (!curve->inside() || !curve->reverses()) continue;
+    least_apart = std::min(least_apart, curve->apart_over.minimum);
+    most_apart = std::max(most_apart, curve->apart_over.maximum);
+    least = std::min(least, curve->largest_over.minimum);
+    greatest = std::max(greatest, curve->largest_over.maximum);
   }
   lines.push_back(
       fmt::format("Those that do both reach {:.0f} to {:.0f} N and are without contact "
@@ -161,17 +178,7 @@ Lines about(const Fig34Study& s, bool drag) {
   lines.push_back(out.empty() ? "No value and no pair of values of the grid is ruled out."
                               : "What none of them has:");
   for (const std::string& line : out) lines.push_back("- " + line);
-  Lines open;
-  for (const Parameter& of : parameters()) {
-    Lines values;
-    for (const double value : values_of(s, of))
-      if (count(s, [&](const Fig34Point& p) {
-            return p.drag == drag && p.*of.member == value;
-          }).both > 0)
-        values.push_back(number_of(of, value));
-    open.push_back(fmt::format("{} {}{}", of.name, joined(values), of.unit));
-  }
-  lines.push_back("What some of them have: " + joined(open, "; ") + ".");
+  lines.push_back("What some of them have: " + possible_values(s, drag) + ".");
   return lines;
 }
 
@@ -184,28 +191,22 @@ std::string headline(const Fig34Study& s) {
     const Count d = count(s, true);
     text += fmt::format("; with Cc {} of {}", d.both, d.all);
   }
-  int outside = 0;
-  for (const Fig34Expectation& e : s.expectations) outside += e.holds() ? 0 : 1;
-  return text + fmt::format(". {} of {} expectations hold.",
-                            static_cast<int>(s.expectations.size()) - outside,
-                            s.expectations.size());
+  return text +
+         fmt::format(". {} of {} expectations hold.",
+                     report::count_of(s.expectations, [](const auto& e) { return e.holds(); }),
+                     s.expectations.size());
 }
 
 // What the printed figure says of the teeth, without and with the drag on the block.
 Lines answers_of(const Fig34Study& s) {
   Lines answers;
-  for (const bool drag : {false, true}) {
-    if (drag && !has_drag(s)) continue;
+  for (const bool drag : drags_of(s)) {
     const std::string name = drag_name(drag);
-    if (count(s, drag).both == 0) {
-      answers.push_back(
-          report::sentence(name + ": no contact law of the grid can be what is printed"));
-      continue;
-    }
     const Lines out = ruled_out(s, drag);
     answers.push_back(report::sentence(
-        out.empty() ? name + ": the figure rules out no value of the contact law"
-                    : fmt::format("{}: the figure rules out {}", name, fmt::join(out, "; "))));
+        count(s, drag).both == 0 ? name + ": no contact law of the grid can be what is printed"
+        : out.empty()            ? name + ": the figure rules out no value of the contact law"
+                                 : name + ": the figure rules out " + joined(out, "; ")));
   }
   for (const Fig34Expectation& e : s.expectations)
     if (!e.holds())
@@ -253,46 +254,42 @@ double stated(double value, const Fig34Expectation::Found& f) {
 }
 
 report::Section expectations_section(const Fig34Study& s) {
-  report::Table table{{"what", "unit", "expected from", "to", "c, s/m", "found from", "to",
-                       "differs between windows, %", "verdict"},
-                      {}};
+  report::NewSection section(
+      "Expectations",
+      "Expectations written down before the study, from first tries with another program and "
+      "from the printed torques. The damping of the first tries is not known: each is shown "
+      "for several values and counts as confirmed if it is inside for any of them. Found over "
+      "block inertias of 1000, 1500 and 2000 kg mm2 and over consecutive windows of the same "
+      "motion. Where these windows differ by more than 1 %, the motion does not repeat and the "
+      "range has two significant digits. The expected ranges are of the paper's pump at 275 "
+      "bar and 1500 rpm, whatever the case is.");
+  section.columns("what", "unit", "expected from", "to", "c, s/m", "found from", "to",
+                  "differs between windows, %", "verdict");
   for (const Fig34Expectation& e : s.expectations)
-    for (const auto& f : e.found)
-      table.rows.push_back({e.what, e.unit, e.low, e.high,
-                            e.found.size() > 1 ? Cell(f.dissipation) : Cell(), stated(f.least, f),
-                            stated(f.greatest, f),
-                            e.found.size() > 1 ? Cell(std::round(1000 * f.spread) / 10) : Cell(),
-                            e.inside(f) ? "inside" : "outside"});
-  return {"Expectations",
-          "Expectations written down before the study, from first tries with another program and "
-          "from the printed torques. The damping of the first tries is not known: each is shown "
-          "for several values and counts as confirmed if it is inside for any of them. Found over "
-          "block inertias of 1000, 1500 and 2000 kg mm2 and over consecutive windows of the same "
-          "motion. Where these windows differ by more than 1 %, the motion does not repeat and the "
-          "range has two significant digits. The expected ranges are of the paper's pump at 275 "
-          "bar and 1500 rpm, whatever the case is.",
-          {},
-          std::move(table)};
+    for (const auto& f : e.found) {
+      const auto of_several = [&](double value) {
+        return e.found.size() > 1 ? value : not_computed();
+      };
+      section.row(e.what, e.unit, e.low, e.high, of_several(f.dissipation), stated(f.least, f),
+                  stated(f.greatest, f), of_several(std::round(1000 * f.spread) / 10),
+                  e.inside(f) ? "inside" : "outside");
+    }
+  return section;
 }
 
 report::Section counts_section(const Fig34Study& s) {
-  report::Table table{{"Cc", "value", "laws", "inside the axes", "reverse in every pitch", "both"},
-                      {}};
-  for (const bool drag : {false, true}) {
-    if (drag && !has_drag(s)) continue;
+  report::NewSection section(
+      "By value",
+      "How many of the contact laws with a value stay inside the printed axes, change the sign "
+      "in every pitch, and do both.");
+  section.columns("Cc", "value", "laws", "inside the axes", "reverse in every pitch", "both");
+  for (const bool drag : drags_of(s))
     for (const Parameter& of : parameters())
       for (const double value : values_of(s, of)) {
-        const Count c =
-            count(s, [&](const Fig34Point& p) { return p.drag == drag && p.*of.member == value; });
-        table.rows.push_back({drag_name(drag), value_text(of, value), long{c.all}, long{c.inside},
-                              long{c.reverses}, long{c.both}});
+        const Count c = count(s, drag, of, value);
+        section.row(drag_name(drag), value_text(of, value), c.all, c.inside, c.reverses, c.both);
       }
-  }
-  return {"By value",
-          "How many of the contact laws with a value stay inside the printed axes, change the sign "
-          "in every pitch, and do both.",
-          {},
-          std::move(table)};
+  return section;
 }
 
 std::vector<report::Record> records(const Fig34Study& s) {
@@ -346,8 +343,7 @@ report::Figure scatter_figure(const Fig34Study& s) {
                             true,
                             true,
                             {{0, kFig34Axes, ""}, {most_apart, kFig34Axes, ""}}});
-  for (const bool drag : {false, true}) {
-    if (drag && !has_drag(s)) continue;
+  for (const bool drag : drags_of(s))
     for (std::size_t a = 0; a < approaches.size(); ++a) {
       report::ScatterSeries series;
       series.name = fmt::format("{:.3g} um at 100 N, {}", 1e6 * approaches[a], drag_name(drag));
@@ -364,7 +360,6 @@ report::Figure scatter_figure(const Fig34Study& s) {
       }
       content.series.push_back(std::move(series));
     }
-  }
   return {"fig34_laws", "Every contact law: largest force over loss of contact", "",
           std::move(content)};
 }
@@ -375,9 +370,10 @@ report::Document fig34_document(const Fig34Study& s, const report::Lines& progra
                                 const CaseDescription& description) {
   report::Document document =
       case_document(description, "What Fig. 34 can mean: " + s.the_case.name, program);
-  document.verdict = report::Verdict{std::nullopt, headline(s),
-                                     s.as_expected() ? "As expected" : "Not all as expected"};
-  document.verdict->answers = answers_of(s);
+  document.verdict = {.agrees = std::nullopt,
+                      .headline = headline(s),
+                      .word = s.as_expected() ? "As expected" : "Not all as expected",
+                      .answers = answers_of(s)};
   document.summary = summary_of(s);
   document.runs = {expectations_section(s), counts_section(s)};
   document.records = records(s);
@@ -418,11 +414,8 @@ std::string fig34_curves_csv(const Fig34Study& s) {
 }
 
 std::string fig34_text(const Fig34Study& s) {
-  std::string text = report::answers_text(s.the_case.name, headline(s), answers_of(s));
-  for (const auto& group : summary_of(s).groups) {
-    text += group.title + "\n";
-    for (const std::string& line : group.lines) text += "  " + line + "\n";
-  }
+  std::string text = report::answers_text(s.the_case.name, headline(s), answers_of(s)) +
+                     report::summary_text(summary_of(s));
   text +=
       fmt::format("\n{:<68} {:>18}  {:>7} {:>18}\n", "expectation", "window", "c, s/m", "found");
   for (const Fig34Expectation& e : s.expectations)
