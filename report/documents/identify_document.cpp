@@ -1,31 +1,25 @@
 #include "bentaxis/designs/identify_document.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
-#include "answers_text.h"
 #include "bentaxis/files/case_writer.h"
-#include "bentaxis/pump/number.h"
 #include "bentaxis/results/channels.h"
 #include "document_parts.h"
+#include "identify_goodness.h"
 
 namespace bentaxis::designs {
 namespace {
 
-using report::Cell;
+using report::NewSection;
 using report::Section;
 
 // Largest R-hat of walkers that have settled (Vehtari et al. 2021 ask for 1.01 of long chains).
 constexpr double kSettled = 1.1;
+constexpr std::size_t kWorstPrinted = 5;
 
 // The largest R-hat of walkers that have not settled.
 std::optional<double> unsettled(const Identification& result) {
   const auto& rhat = result.posterior.rhat;
   if (result.posterior.count == 0 || rhat.empty()) return std::nullopt;
-  const double largest = *std::max_element(rhat.begin(), rhat.end());
+  const double largest = *std::ranges::max_element(rhat);
   return largest <= kSettled ? std::nullopt : std::optional(largest);
 }
 
@@ -39,31 +33,12 @@ Quantiles quantiles_of(const std::vector<double>& draws, std::size_t columns, st
   for (std::size_t at = column; at < draws.size(); at += columns)
     if (is_computed(draws[at])) values.push_back(draws[at]);
   if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   const auto at = [&](double share) {
     return values[static_cast<std::size_t>(
         std::lround(share * static_cast<double>(values.size() - 1)))];
   };
   return {at(0.025), at(0.5), at(0.975)};
-}
-
-Cell cell(double value) { return is_computed(value) ? Cell(value) : Cell(); }
-
-std::string known_text(const DataModel& model, const Datum& datum) {
-  std::string at = model.data().conditions[datum.condition].name;
-  if (!datum.variant.empty()) at += (at.empty() ? "" : "; ") + datum.variant;
-  return at;
-}
-
-// What is known of a datum from outside.
-std::string given_text(const Datum& datum) {
-  if (datum.curve)
-    return fmt::format("{} points +- {:.3g}", datum.curve->values.size(), datum.uncertainty);
-  if (datum.value)
-    return fmt::format("{:.6g} +- {:g}", *datum.value, rounded(datum.uncertainty, 2));
-  if (!std::isfinite(datum.low)) return fmt::format("below {:g}", datum.high);
-  if (!std::isfinite(datum.high)) return fmt::format("above {:g}", datum.low);
-  return fmt::format("{:g} to {:g}", datum.low, datum.high);
 }
 
 // The model's number for a datum, of its range both.
@@ -73,16 +48,14 @@ std::string number_text(const Datum& datum, double low, double high) {
 }
 
 double worst_residual(const Identification& result, std::size_t datum) {
-  const auto worst = std::find_if(result.worst.begin(), result.worst.end(),
-                                  [&](const WorstResidual& w) { return w.datum == datum; });
+  const auto worst = std::ranges::find(result.worst, datum, &WorstResidual::datum);
   return worst == result.worst.end() ? 0 : worst->residual;
 }
 
 // ---- Unknowns at a bound
 
 const HeldUnknown* held_of(const Identification& result, std::size_t unknown) {
-  const auto at = std::find_if(result.held.begin(), result.held.end(),
-                               [&](const HeldUnknown& h) { return h.unknown == unknown; });
+  const auto at = std::ranges::find(result.held, unknown, &HeldUnknown::unknown);
   return at == result.held.end() ? nullptr : &*at;
 }
 
@@ -102,193 +75,15 @@ std::string held_line(const DataModel& model, const HeldUnknown& held) {
 }
 
 std::string held_names(const DataModel& model, const Identification& result) {
-  std::vector<std::string> names;
-  for (const HeldUnknown& held : result.held)
-    names.push_back(model.data().unknowns[held.unknown].name());
-  return report::joined(names);
+  return joined(result.held, ", ", [&](const HeldUnknown& held) {
+    return model.data().unknowns[held.unknown].name();
+  });
 }
 
 // What is not known because of them.
 std::string only_within(const DataModel& model, const Identification& result) {
   return "They hold only if the bound is right at which this ends: " + held_names(model, result) +
          ".";
-}
-
-// ---- Goodness of fit
-
-constexpr std::size_t kWorstShown = 10, kWorstPrinted = 5;
-constexpr std::size_t kFurtherShown = 5;
-constexpr const char* kWithheld =
-    "Profile limits, posterior, bands of the reactions and useful further measurements are "
-    "withheld: they would hold only if the model were right.";
-
-std::string chi_square_text(double value) {
-  return value < 1e4 || value > 1e15 ? fmt::format("{:.4g}", value) : fmt::format("{:.0f}", value);
-}
-std::string p_text(double p) {
-  return p < 1e-300 ? "p below 1e-300" : fmt::format("p = {:.2g}", p);
-}
-
-// "chi-square 70.1 with 73 degrees of freedom, p = 0.57"
-std::string test_text(const GoodnessOfFit& fit) {
-  std::string text = fmt::format("chi-square {} with {} degrees of freedom",
-                                 chi_square_text(fit.chi_square), fit.degrees_of_freedom());
-  return fit.p_value ? text + ", " + p_text(*fit.p_value) : text;
-}
-
-// The same with what it means.
-std::string fit_text(const GoodnessOfFit& fit) {
-  const std::string test = test_text(fit);
-  if (fit.refuted())
-    return fit.p_value ? fmt::format("the model does not fit the data: {} (refuted below {:g})",
-                                     test, kFitRefutedBelow)
-                       : "the model does not fit the data: " + test +
-                             ", where a fit passes through all data";
-  if (!fit.p_value) return "no test of the fit: " + test;
-  if (fit.uncertainties_too_large())
-    return fmt::format(
-        "fit: {}: not refuted; residuals are smaller than expected from the stated uncertainties",
-        test);
-  return fmt::format("fit: {}: not refuted", test);
-}
-
-std::string birge_text(const GoodnessOfFit& fit) {
-  return fmt::format(
-      "Linear standard deviations are widened: they hold for data with all stated uncertainties "
-      "multiplied by {:.3g}, the root of chi-square over the degrees of freedom (Birge ratio). "
-      "This accounts for uncertainties that were stated too small. It does not account for a wrong "
-      "model: true values can lie outside.",
-      fit.birge_ratio());
-}
-
-// Given and model of a worst residual; of a prior its distribution and the unknown.
-std::pair<std::string, std::string> worst_values(const DataModel& model,
-                                                 const Identification& result,
-                                                 const WorstResidual& worst) {
-  if (worst.unknown)
-    return {model.data().unknowns[*worst.unknown].prior->text(),
-            fmt::format("{:.6g}", result.fit.x[*worst.unknown])};
-  const Datum& datum = model.data().data[*worst.datum];
-  const double of_model = result.numbers[model.place_of(*worst.datum) + worst.number];
-  const std::string given = datum.curve
-                                ? fmt::format("{:.6g} +- {:g}", datum.curve->values[worst.number],
-                                              rounded(datum.curve->uncertainties[worst.number], 2))
-                                : given_text(datum);
-  return {given, fmt::format("{:.6g}", of_model)};
-}
-
-std::string worst_line(const DataModel& model, const Identification& result,
-                       const WorstResidual& worst) {
-  const auto [given, of_model] = worst_values(model, result, worst);
-  const std::string unit = worst.datum ? model.data().data[*worst.datum].unit
-                                       : model.data().unknowns[*worst.unknown].variable.unit();
-  return fmt::format("{}: {:+.1f} sigma (data {}, model {}{}{})", name_of(model, worst),
-                     worst.residual, given, of_model, unit.empty() ? "" : " ", unit);
-}
-
-// "friction.piston_coulomb_N (119.8 N instead of 0): chi-square .."
-std::string further_line(const DataModel& model, const FurtherUnknown& f) {
-  const std::string unit = f.variable.unit();
-  std::string text =
-      fmt::format("{} ({:.6g}{}{} instead of {:g}): {} would remain", f.variable.name(), f.value,
-                  unit.empty() ? "" : " ", unit, f.before, test_text(f.fit));
-  if (f.fit.refuted()) text += ", still refuted";
-  if (!model.base().analytic.piston_friction && f.variable.name().starts_with("friction.piston_"))
-    text += "; it acts with piston_friction = true of [assumptions.analytic] only";
-  if (!f.implausible.empty())
-    text += "; the value is implausible: " + report::joined(f.implausible);
-  return text;
-}
-
-// Names of those that the data cannot tell from the best: the rise of chi-square would be within
-// what one unknown's 95 % interval allows.
-std::vector<std::string> as_good_as_best(const Identification& result) {
-  constexpr double kRise95 = 3.841;
-  std::vector<std::string> names;
-  for (std::size_t k = 1; k < result.further.size(); ++k)
-    if (result.further[k].implausible.empty() &&
-        result.further[k].fit.chi_square < result.further[0].fit.chi_square + kRise95)
-      names.push_back(result.further[k].variable.name());
-  return names;
-}
-
-std::string further_text(const DataModel& model, const Identification& result) {
-  if (result.further.empty()) return "no single further parameter of the case improves the fit";
-  std::string text = "the further unknown that would improve the fit most: " +
-                     further_line(model, result.further.front());
-  if (const auto names = as_good_as_best(result); !names.empty())
-    text += ". The data do not distinguish it from " + report::joined(names);
-  return text;
-}
-
-Section goodness_section(const Identification& result) {
-  const GoodnessOfFit& fit = result.goodness;
-  Section section;
-  section.title = "Goodness of fit";
-  section.text =
-      "Chi-square: sum of the squared residuals, each over its standard uncertainty. p: "
-      "probability of a larger chi-square if the model and all stated uncertainties are right and "
-      "the data are independent of each other. The degrees of freedom are the data that count "
-      "(values, points of curves, priors, windows that the fit leaves) less the directions of the "
-      "unknowns that were fitted to them.";
-  section.facts = {{"result", fit_text(fit)}};
-  if (!fit.p_value)
-    section.facts.emplace_back(
-        "no test", "There are as many fitted unknowns as data: the model cannot be tested.");
-  if (fit.refuted()) {
-    section.facts.emplace_back("withheld", kWithheld);
-    section.facts.emplace_back("widened", birge_text(fit));
-  }
-  section.table.columns = {
-      "chi-square", "data that count", "fitted directions", "degrees of freedom",
-      "p-value",    "refuted below",   "refuted",           "Birge ratio"};
-  section.table.rows.push_back(
-      {fit.chi_square, static_cast<long>(fit.residuals), static_cast<long>(fit.fitted_directions),
-       static_cast<long>(fit.degrees_of_freedom()), fit.p_value ? Cell(*fit.p_value) : Cell(),
-       kFitRefutedBelow, fit.refuted(), fit.p_value ? Cell(fit.birge_ratio()) : Cell()});
-  return section;
-}
-
-Section worst_section(const DataModel& model, const Identification& result) {
-  Section section;
-  section.title = "Largest residuals";
-  section.text =
-      "Residual: model minus datum over its standard uncertainty (sigma); of a curve the worst "
-      "point. Share of chi-square: of all points of the curve.";
-  section.table.columns = {
-      "datum", "unit", "given", "model", "residual, sigma", "share of chi-square, %"};
-  for (std::size_t w = 0; w < std::min(kWorstShown, result.worst.size()); ++w) {
-    const WorstResidual& worst = result.worst[w];
-    const auto [given, of_model] = worst_values(model, result, worst);
-    section.table.rows.push_back({name_of(model, worst),
-                                  worst.datum
-                                      ? model.data().data[*worst.datum].unit
-                                      : model.data().unknowns[*worst.unknown].variable.unit(),
-                                  given, of_model, worst.residual, 100 * worst.share});
-  }
-  return section;
-}
-
-Section further_section(const DataModel& model, const Identification& result) {
-  Section section;
-  section.title = "Which further unknown would improve the fit most";
-  section.text =
-      "All continuous parameters that are active in the case and not unknown were compared by the "
-      "derivatives of the residuals. The most promising ones were each fitted together with the "
-      "unknowns. A better fit does not prove that this parameter is wrong: several can have the "
-      "same effect on the data.";
-  section.facts = {{"result", further_text(model, result)}};
-  section.table.columns = {"parameter", "unit",       "in the case",
-                           "fitted",    "chi-square", "degrees of freedom",
-                           "p-value",   "refuted",    "implausible"};
-  for (std::size_t k = 0; k < std::min(kFurtherShown, result.further.size()); ++k) {
-    const FurtherUnknown& f = result.further[k];
-    section.table.rows.push_back({f.variable.name(), f.variable.unit(), f.before, f.value,
-                                  f.fit.chi_square, static_cast<long>(f.fit.degrees_of_freedom()),
-                                  f.fit.p_value ? Cell(*f.fit.p_value) : Cell(), f.fit.refuted(),
-                                  report::joined(f.implausible)});
-  }
-  return section;
 }
 
 report::Verdict verdict_of(const Identification& result, std::string headline) {
@@ -310,114 +105,95 @@ double widened_by(const Identification& result) {
 }
 
 Section unknowns_section(const DataModel& model, const Identification& result) {
-  Section section;
-  section.title = "Unknowns";
-  section.text =
+  NewSection section(
+      "Unknowns",
       "Identified: minimum of the sum of squares. Linear: standard uncertainty of a linearised "
       "model with bounds as normal priors. Profile: 95 % limits, at which the sum of squares has "
       "increased by 3.841 with the other unknowns fitted again; a limit at a bound follows from "
       "the bound, not from the data. Posterior: 95 % of the draws. All of them are right only "
-      "where the stated uncertainties are right: a rise of 3.841 means 95 % for that noise alone.";
+      "where the stated uncertainties are right: a rise of 3.841 means 95 % for that noise alone.");
   if (result.goodness.refuted()) {
-    section.facts.emplace_back("withheld", kWithheld);
-    section.facts.emplace_back("widened", birge_text(result.goodness));
+    section.fact("withheld", kWithheld);
+    section.fact("widened", birge_text(result.goodness));
   }
-  section.table.columns = {"unknown",
-                           "unit",
-                           "bounds",
-                           "identified",
-                           "linear",
-                           "profile from",
-                           "profile to",
-                           "open at a bound",
-                           "2.5 % from",
-                           "97.5 % to",
-                           "share of bounds left",
-                           "ends at"};
+  section.columns("unknown", "unit", "bounds", "identified", "linear", "profile from", "profile to",
+                  "open at a bound", "2.5 % from", "97.5 % to", "share of bounds left", "ends at");
   for (std::size_t i = 0; i < model.size(); ++i) {
     const Unknown& u = model.data().unknowns[i];
     const Quantiles q = quantiles_of(result.posterior.unknowns, model.size(), i);
-    std::vector<Cell> row = {u.name(), u.variable.unit(),
-                             fmt::format("{:g} to {:g}", u.low, u.high), result.fit.x[i],
-                             result.information.deviation[i]};
-    if (result.profiles.empty()) {
-      row.insert(row.end(), {Cell(), Cell(), Cell()});
-    } else {
-      const Profile& p = result.profiles[i];
-      row.insert(row.end(), {p.low, p.high,
-                             std::string(p.open_low && p.open_high ? "both"
-                                         : p.open_low              ? "low"
-                                         : p.open_high             ? "high"
-                                                                   : "")});
-    }
-    row.insert(row.end(), {cell(q.low), cell(q.high), cell((q.high - q.low) / (u.high - u.low))});
     const HeldUnknown* held = held_of(result, i);
-    row.emplace_back(!held ? "" : held->high ? "its upper bound" : "its lower bound");
-    section.table.rows.push_back(std::move(row));
+    report::Row profile(3);
+    if (!result.profiles.empty()) {
+      const Profile& p = result.profiles[i];
+      profile = report::row_of(p.low, p.high,
+                               p.open_low && p.open_high ? "both"
+                               : p.open_low              ? "low"
+                               : p.open_high             ? "high"
+                                                         : "");
+    }
+    section.row(u.name(), u.variable.unit(), fmt::format("{:g} to {:g}", u.low, u.high),
+                result.fit.x[i], result.information.deviation[i], profile, q.low, q.high,
+                (q.high - q.low) / (u.high - u.low),
+                held == nullptr ? ""
+                : held->high    ? "its upper bound"
+                                : "its lower bound");
   }
   return section;
 }
 
 Section determined_section(const DataModel& model, const Identification& result) {
-  Section section;
-  section.title = "What the data determine";
-  section.text =
+  constexpr double kNamed = 0.2;  // weight of an unknown
+  NewSection section(
+      "What the data determine",
       "From the derivatives of the fitted data at the solution. A window that is met has no "
       "derivative there, although it limits the range: profiles and posterior take it into "
-      "account.";
-  for (const HeldUnknown& held : result.held)
-    section.facts.emplace_back("", held_line(model, held));
-  for (const std::string& line : result.information.words) section.facts.emplace_back("", line);
-  section.table.columns = {"direction", "times narrower than the bounds", "mostly along"};
+      "account.");
+  for (const HeldUnknown& held : result.held) section.fact("", held_line(model, held));
+  for (const std::string& line : result.information.words) section.fact("", line);
+  section.columns("direction", "times narrower than the bounds", "mostly along");
   for (std::size_t d = 0; d < result.information.directions.size(); ++d) {
     const Direction& direction = result.information.directions[d];
-    std::vector<std::pair<double, std::size_t>> parts;
-    for (std::size_t i = 0; i < direction.weights.size(); ++i)
-      if (std::abs(direction.weights[i]) > 0.2)
-        parts.emplace_back(-std::abs(direction.weights[i]), i);
-    std::sort(parts.begin(), parts.end());
-    std::string along;
-    for (const auto& [size, i] : parts)
-      along += fmt::format("{}{:+.2f} {}", along.empty() ? "" : ", ", direction.weights[i],
-                           model.data().unknowns[i].name());
-    section.table.rows.push_back({static_cast<long>(d + 1), direction.strength, along});
+    const auto size = [&](std::size_t i) { return std::abs(direction.weights[i]); };
+    auto along = report::by_size(direction.weights.size(), size);
+    std::erase_if(along, [&](std::size_t i) { return !(size(i) > kNamed); });
+    section.row(d + 1, direction.strength, joined(along, ", ", [&](std::size_t i) {
+                  return fmt::format("{:+.2f} {}", direction.weights[i],
+                                     model.data().unknowns[i].name());
+                }));
   }
   return section;
 }
 
+// What is said of every datum: where it is from, what is given, what the model says.
+const std::vector<std::string> kDatumColumns = {"datum", "where", "at", "unit", "given", "model"};
+
+report::Row datum_cells(const DataModel& model, const Identification& result, std::size_t i) {
+  const Datum& datum = model.data().data[i];
+  const std::size_t place = model.place_of(i);
+  return report::row_of(
+      datum.what, datum.where, known_text(model, datum), datum.unit, given_text(datum),
+      number_text(datum, result.numbers[place], result.numbers[place + datum.size() - 1]));
+}
+
 Section fitted_section(const DataModel& model, const Identification& result) {
-  Section section;
-  section.title = "Data that unknowns are fitted to";
-  section.text =
-      "Residual: model minus datum over its standard uncertainty, 0 inside a window. "
-      "Leave-one-out: prediction from the other data, with bounds as normal priors, and its error "
-      "over the combined standard uncertainty of prediction and datum";
-  section.text += result.goodness.refuted()
-                      ? ", both as stated: as the fit is refuted, they are too small."
-                      : ".";
-  section.table.columns = {"datum", "where", "at",       "unit",
-                           "given", "model", "residual", "left out: predicted",
-                           "+-",    "off by"};
+  NewSection section(
+      "Data that unknowns are fitted to",
+      std::string("Residual: model minus datum over its standard uncertainty, 0 inside a window. "
+                  "Leave-one-out: prediction from the other data, with bounds as normal priors, "
+                  "and its error over the combined standard uncertainty of prediction and datum") +
+          (result.goodness.refuted()
+               ? ", both as stated: as the fit is refuted, they are too small."
+               : "."));
+  section.columns(kDatumColumns, "residual", "left out: predicted", "+-", "off by");
   for (std::size_t i = 0; i < model.data().data.size(); ++i) {
     const Datum& datum = model.data().data[i];
     if (datum.use != Use::fitted) continue;
-    const std::size_t place = model.place_of(i);
-    std::vector<Cell> row = {
-        datum.what,
-        datum.where,
-        known_text(model, datum),
-        datum.unit,
-        given_text(datum),
-        number_text(datum, result.numbers[place], result.numbers[place + datum.size() - 1]),
-        worst_residual(result, i)};
-    const auto left = std::find_if(result.left_out.begin(), result.left_out.end(),
-                                   [&](const LeftOut& l) { return l.datum == i; });
-    if (left == result.left_out.end())
-      row.insert(row.end(), {Cell(), Cell(), Cell()});
-    else
-      row.insert(row.end(),
-                 {number_text(datum, left->value, left->high), left->deviation, left->distance});
-    section.table.rows.push_back(std::move(row));
+    report::Row prediction;
+    if (const auto left = std::ranges::find(result.left_out, i, &LeftOut::datum);
+        left != result.left_out.end())
+      prediction = report::row_of(number_text(datum, left->value, left->high), left->deviation,
+                                  left->distance);
+    section.row(datum_cells(model, result, i), worst_residual(result, i), prediction);
   }
   return section;
 }
@@ -441,52 +217,38 @@ std::optional<PredictedBand> predicted_band(const DataModel& model, const Identi
 }
 
 Section predicted_section(const DataModel& model, const Identification& result) {
-  Section section;
-  section.title = "Data that are predicted";
-  section.text = "Nothing was fitted to them. Band: 95 % of the posterior; of a range its ends.";
-  section.table.columns = {"datum",      "where",     "at",
-                           "unit",       "given",     "model",
-                           "2.5 % from", "97.5 % to", "the band meets it"};
+  NewSection section("Data that are predicted",
+                     "Nothing was fitted to them. Band: 95 % of the posterior; of a range its "
+                     "ends.");
+  section.columns(kDatumColumns, "2.5 % from", "97.5 % to", "the band meets it");
   for (std::size_t i = 0; i < model.data().data.size(); ++i) {
-    const Datum& datum = model.data().data[i];
-    if (datum.use != Use::predicted) continue;
-    const std::size_t place = model.place_of(i), last = place + datum.size() - 1;
-    std::vector<Cell> row = {datum.what,
-                             datum.where,
-                             known_text(model, datum),
-                             datum.unit,
-                             given_text(datum),
-                             number_text(datum, result.numbers[place], result.numbers[last])};
+    if (model.data().data[i].use != Use::predicted) continue;
+    report::Row in_band;
     if (const auto band = predicted_band(model, result, i))
-      row.insert(row.end(), {band->low, band->high, band->meets ? "yes" : "no"});
-    else
-      row.insert(row.end(), {Cell(), Cell(), Cell()});
-    section.table.rows.push_back(std::move(row));
+      in_band = report::row_of(band->low, band->high, band->meets ? "yes" : "no");
+    section.row(datum_cells(model, result, i), in_band);
   }
   return section;
 }
 
 Section left_out_section(const DataModel& model) {
-  Section section;
-  section.title = "Data that are left out";
-  section.table.columns = {"datum", "where", "why"};
+  NewSection section("Data that are left out");
+  section.columns("datum", "where", "why");
   for (const Datum& datum : model.data().data)
-    if (datum.use == Use::left_out)
-      section.table.rows.push_back({datum.what, datum.where, datum.reason});
+    if (datum.use == Use::left_out) section.row(datum.what, datum.where, datum.reason);
   return section;
 }
 
 Section reactions_section(const DataModel& model, const Identification& result) {
   const ChannelLayout layout(model.base().pump);
-  Section section;
-  section.title = "Uncertainty of each reaction";
-  section.text =
+  NewSection section(
+      "Uncertainty of each reaction",
       "Half the width of the 95 % band where it is widest, of the peak of its middle curve, at the "
-      "case's own speed and pressure. All other parameters are taken as known.";
-  if (!result.held.empty()) section.facts.emplace_back("", only_within(model, result));
-  section.table.columns = {"reaction", "half width, % of peak"};
+      "case's own speed and pressure. All other parameters are taken as known.");
+  if (!result.held.empty()) section.fact("", only_within(model, result));
+  section.columns("reaction", "half width, % of peak");
   for (const ReactionBand& band : result.bands)
-    section.table.rows.push_back({layout.channels()[band.column].name, 100 * band.half_width});
+    section.row(layout.channels()[band.column].name, 100 * band.half_width);
   return section;
 }
 
@@ -509,25 +271,22 @@ Section candidates_section(const Identification& result) {
 }
 
 Section search_section(const DataModel& model, const Identification& result) {
-  Section section;
-  section.title = "Search";
-  section.facts = {{"least squares", least_squares_library()},
-                   {"sum of squares", fmt::format("{:.4g}", result.fit.sum_of_squares)},
-                   {"residuals", std::to_string(result.fit.residuals.size())},
-                   {"unknowns", std::to_string(model.size())}};
+  NewSection section("Search");
+  section.fact("least squares", least_squares_library());
+  section.fact("sum of squares", "{:.4g}", result.fit.sum_of_squares);
+  section.fact("residuals", std::to_string(result.fit.residuals.size()));
+  section.fact("unknowns", std::to_string(model.size()));
   if (result.posterior.count > 0) {
     const auto& p = result.posterior;
-    section.facts.emplace_back("moves accepted", fmt::format("{:.0f} %", 100 * p.accepted));
-    section.facts.emplace_back("independent draws, of the worst unknown",
-                               unsettled(result) ? "not determined: the chains have not converged"
-                                                 : fmt::format("{:.0f}", p.effective));
-    section.facts.emplace_back(
-        "largest R-hat", fmt::format("{:.3f}", *std::max_element(p.rhat.begin(), p.rhat.end())));
+    section.fact("moves accepted", "{:.0f} %", 100 * p.accepted);
+    section.fact("independent draws, of the worst unknown",
+                 unsettled(result) ? "not determined: the chains have not converged"
+                                   : fmt::format("{:.0f}", p.effective));
+    section.fact("largest R-hat", "{:.3f}", std::ranges::max(p.rhat));
   }
-  section.table.columns = {"minimum", "sum of squares", "starts that led there"};
+  section.columns("minimum", "sum of squares", "starts that led there");
   for (std::size_t m = 0; m < result.minima.size(); ++m)
-    section.table.rows.push_back({static_cast<long>(m + 1), result.minima[m].sum_of_squares,
-                                  static_cast<long>(result.minima[m].starts)});
+    section.row(m + 1, result.minima[m].sum_of_squares, result.minima[m].starts);
   return section;
 }
 
@@ -541,14 +300,13 @@ std::vector<report::Figure> figures_of(const DataModel& model, const Identificat
     figures.push_back({"known", "Uncertainty of each reaction", "", known});
     for (const ReactionBand& band : result.bands) {
       const Channel& channel = layout.channels()[band.column];
-      report::BandFigure figure;
-      figure.x = {"shaft angle", "deg"};
-      figure.y = {channel.quantity + " " + channel.axis, channel.unit};
-      figure.angle = true;
-      figure.x_values = result.theta_deg;
-      figure.bands = {{"95 % of the posterior", band.low, band.middle, band.high}};
-      figures.push_back({"band_" + channel.name, channel.name + ": what the data do not determine",
-                         "", std::move(figure)});
+      figures.push_back(
+          {"band_" + channel.name, channel.name + ": what the data do not determine", "",
+           report::BandFigure{{"shaft angle", "deg"},
+                              {channel.quantity + " " + channel.axis, channel.unit},
+                              true,
+                              result.theta_deg,
+                              {{"95 % of the posterior", band.low, band.middle, band.high}}}});
     }
   }
   for (std::size_t i = 0; i < result.profiles.size(); ++i) {
@@ -607,8 +365,8 @@ std::string headline_of(const DataModel& model, const Identification& result) {
         fmt::format("; {} of {} predicted data are outside their 95 % bands", missed, predicted);
   if (!result.held.empty())
     return text + "; how well reactions are known is not stated: bands hold only within that bound";
-  const auto [best, worst] = std::minmax_element(
-      result.bands.begin(), result.bands.end(),
+  const auto [best, worst] = std::ranges::minmax_element(
+      result.bands,
       [](const ReactionBand& a, const ReactionBand& b) { return a.half_width < b.half_width; });
   const ChannelLayout layout(model.base().pump);
   return text + fmt::format("; reactions are known {}to {:.2g} % ({}) .. {:.2g} % ({}) of peak",
@@ -662,16 +420,27 @@ std::vector<std::string> answers_of(const DataModel& model, const Identification
   return answers;
 }
 
-}  // namespace
-
-std::string name_of(const DataModel& model, const WorstResidual& worst) {
-  if (worst.unknown) return "prior of " + model.data().unknowns[*worst.unknown].name();
-  const Datum& datum = model.data().data[*worst.datum];
-  std::string name = datum.what;
-  if (datum.curve) name += fmt::format(" at {:g} deg", datum.curve->theta_deg[worst.number]);
-  if (const std::string at = known_text(model, datum); !at.empty()) name += " (" + at + ")";
-  return name;
+std::vector<report::Warning> warnings_of(const DataModel& model, const Identification& result) {
+  std::vector<report::Warning> warnings;
+  if (result.goodness.uncertainties_too_large())
+    warnings.push_back(
+        {"Stated uncertainties too large",
+         fmt::format("{}: the residuals are smaller than expected from the stated uncertainties. "
+                     "Either these are stated too large, and then all intervals are too wide; or "
+                     "the data are not independent of each other, as points of a smoothed record",
+                     test_text(result.goodness))});
+  if (const auto rhat = unsettled(result))
+    warnings.push_back(
+        {"Posterior not settled",
+         fmt::format("R-hat {:.3g}, above {:g}: the chains have not converged, and the bands are "
+                     "rough estimates only. More --steps, fewer unknowns or narrower bounds help",
+                     *rhat, kSettled)});
+  for (const HeldUnknown& held : result.held)
+    warnings.push_back({"Unknown at its bound", held_line(model, held)});
+  return warnings;
 }
+
+}  // namespace
 
 report::Document identify_document(const DataModel& model, const Identification& result,
                                    const report::Lines& program,
@@ -691,30 +460,14 @@ report::Document identify_document(const DataModel& model, const Identification&
           : "Parameters of the model determined from data, assuming that the model is right and "
             "that all other parameters are known. A fit that is not refuted is not a validation: "
             "only data that nothing was fitted to can validate.";
-  std::vector<report::Warning> warnings;
-  if (result.goodness.uncertainties_too_large())
-    warnings.push_back(
-        {"Stated uncertainties too large",
-         fmt::format("{}: the residuals are smaller than expected from the stated uncertainties. "
-                     "Either these are stated too large, and then all intervals are too wide; or "
-                     "the data are not independent of each other, as points of a smoothed record",
-                     test_text(result.goodness))});
-  if (const auto rhat = unsettled(result))
-    warnings.push_back(
-        {"Posterior not settled",
-         fmt::format("R-hat {:.3g}, above {:g}: the chains have not converged, and the bands are "
-                     "rough estimates only. More --steps, fewer unknowns or narrower bounds help",
-                     *rhat, kSettled)});
-  for (const HeldUnknown& held : result.held)
-    warnings.push_back({"Unknown at its bound", held_line(model, held)});
-  if (!warnings.empty()) report::append(document.warnings, std::move(warnings));
+  if (auto warnings = warnings_of(model, result); !warnings.empty())
+    report::append(document.warnings, std::move(warnings));
   document.runs = {goodness_section(result), worst_section(model, result)};
   if (result.goodness.refuted()) document.runs->push_back(further_section(model, result));
   append(document.runs,
          std::vector{unknowns_section(model, result), determined_section(model, result),
-                     fitted_section(model, result)});
-  document.runs->push_back(predicted_section(model, result));
-  document.runs->push_back(left_out_section(model));
+                     fitted_section(model, result), predicted_section(model, result),
+                     left_out_section(model)});
   if (!result.bands.empty()) {
     document.runs->push_back(reactions_section(model, result));
     document.runs->push_back(candidates_section(result));
