@@ -2,7 +2,7 @@
 # variables is what that has.
 bentaxis_library(fmu STANDARD 20
   SOURCES archive.cpp dependencies.cpp description_fmi2.cpp description_fmi3.cpp description_parts.cpp documentation.cpp
-    embedded.cpp package.cpp platforms.cpp terminals.cpp units.cpp $<TARGET_OBJECTS:bentaxis_fmu_plant>)
+    embedded.cpp package.cpp platforms.cpp sampler.cpp terminals.cpp units.cpp $<TARGET_OBJECTS:bentaxis_fmu_plant>)
 target_link_libraries(bentaxis_fmu PUBLIC bentaxis::pump
   PRIVATE bentaxis::analytic bentaxis::coupled bentaxis::files bentaxis::hydraulics bentaxis::results
     pugixml::pugixml zip)
