@@ -190,6 +190,20 @@ class SaidTest(unittest.TestCase):
                                  "pump: 63.71 cm3/rev: 95.56 l/min at 1500 rpm, 278.8 Nm at 275 bar (ideal); "
                                  "mean piston speed 1.6 m/s")
 
+    def test_ideal_torque_is_of_the_pressure_that_the_load_sets(self):
+        load = ["--set", "load.kind=orifice", "--set", "load.area_mm2=20", "--set", "operation.samples_per_revolution=36"]
+        said = {}
+        for command in ("show", "compare"):
+            done = run(command, REPO / "cases/bap63_rated_hydraulic.toml", *load, "--out", command, cwd=self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            report = json.loads((self.folder / command / "report.json").read_text())
+            (said[command],) = [row["value"] for row in report["derived"] if row["name"] == "ideal torque"]
+            if command == "show":
+                printed = float(re.search(r"ideal torque +([\d.]+) Nm\n", done.stdout)[1])
+        self.assertAlmostEqual(said["show"], said["compare"], delta=1e-9)
+        self.assertAlmostEqual(printed, said["show"], delta=0.01)
+        self.assertNotAlmostEqual(printed, 278.83, delta=10)  # that of the delivery pressure in the file
+
     def test_a_block_that_nothing_presses_has_no_balance(self):
         for delivery in (-10, -50, -200):
             warnings = dict(WARNING.findall(run("show", self.rated, "--set", f"pressure.delivery_bar={delivery}").stderr))

@@ -277,7 +277,7 @@ class NotCompared(unittest.TestCase):
     def test_designs_that_both_models_refuse(self):
         sweep = ["sweep", self.case, *FEW, "--check", "100%", "--output", "peak:Rb1", "--vary"]
         done, report = self.run_case(*sweep, "pump.tilt_deg=40:100:30")
-        self.assertIn("Simbody agrees at 1 of 1 designs; 2 of 3 checked designs not compared: both models refuse them", done.stdout)
+        self.assertIn("Simbody agrees at 2 of 2 designs; 1 of 3 checked designs not compared: both models refuse them", done.stdout)
         self.assertIs(report["verdict"]["agrees"], True)
         done, report = self.run_case(*sweep, "pump.tilt_deg=90,100", status=1)
         self.assertNotIn("agrees", done.stdout)
@@ -297,10 +297,11 @@ class NotCompared(unittest.TestCase):
     def test_a_curve_that_a_golden_reference_lacks(self):
         golden = self.folder / "golden"
         self.assertEqual(run("reference", "golden", self.case, *FEW, "--angles", "36", "--out", golden).returncode, 0)
-        (curve,) = golden.glob("*.csv")
-        lines = [line.split(",") for line in curve.read_text().splitlines()]
-        place = lines[0].index("Td_z1_Nm")
-        curve.write_text("".join(",".join(line[:place] + line[place + 1:]) + "\n" for line in lines))
+        for curve in golden.glob("*.csv"):
+            lines = [line.split(",") for line in curve.read_text().splitlines()]
+            if "Td_z1_Nm" in lines[0]:
+                place = lines[0].index("Td_z1_Nm")
+                curve.write_text("".join(",".join(line[:place] + line[place + 1:]) + "\n" for line in lines))
         missing = r"Not compared: Td_z1_Nm \(the reference does not have it\)"
         done, report = self.run_case("compare", self.case, *FEW, "--with", golden, status=1)
         self.assertRegex(done.stdout, rf"The reference golden is incomplete: (\d+) of \1 reactions compared agree\.[^\n]*{missing}")
