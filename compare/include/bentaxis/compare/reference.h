@@ -55,6 +55,11 @@ struct FrameMap {
 /// @param sequence  axes, as in "ZXZ" or "313"
 /// @throws InputError where it is none
 Axes turned_axes(const std::string& sequence, const std::array<double, 3>& angles_deg);
+/// Axes that are given in one frame, in the axes of another.
+Axes carried(const Axes& axes, const Axes& from, const Axes& to);
+
+/// What a vector is called that a channel is a component of: quantity and piston, "Rs_1", "Rb1".
+std::string vector_name(const Channel& channel);
 
 /// Three columns that are the components of one vector in their frame: ours = factor x theirs,
 /// turned.
@@ -88,6 +93,9 @@ struct CurveDescription {
   std::vector<VectorMap> vectors;
   std::vector<ColumnMap> columns;    ///< empty: the columns have our names
   std::vector<std::string> ignored;  ///< columns of the file that are not compared
+  /// Vectors of a guess of which one has a component of the wrong sign, the file does not say
+  /// which.
+  std::vector<std::string> one_is_wrong = {};
 };
 
 /// The description.toml of a reference folder.
