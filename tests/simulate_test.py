@@ -46,6 +46,13 @@ class SimulateTest(base.WithFolder):
     def section(self, title):
         return next(s for s in self.report()["runs"] if s["title"].startswith(title))
 
+    def warnings(self):
+        """Names of those that are not of a violated limit of validity, which has one each."""
+        report = self.report()
+        of_limits = [w for w in report["warnings"] if re.match(r"in [\d.e-]+ % of the rows, worst ", w["text"])]
+        self.assertEqual(len(of_limits), sum(limit["violated"] for limit in report["validity"]))
+        return [w["name"] for w in report["warnings"] if w not in of_limits]
+
     def refused(self, case, *words, options=()):
         error = self.simulate(case, *options, status=BAD_INPUT).stderr.strip()
         self.assertEqual(len([line for line in error.splitlines() if "warning" not in line]), 1, error)
@@ -167,7 +174,7 @@ class RestTest(SimulateTest):
         path = self.folder / "case.toml"
         path.write_text(case + "\n[drive]\ntorque_Nm = 200\nkind = \"torque\"\nduration_s = 0.001\nsamples = 2\n")
         self.assertIn("pressure of constant speed", self.simulate(path, "--model", "analytic", "--oil", "periodic").stdout)
-        self.assertEqual([w["name"] for w in self.report()["warnings"]], ["pressure of constant speed"])
+        self.assertEqual(self.warnings(), ["pressure of constant speed"])
         shared = lambda: {row["input"]: row["value"] for row in self.report()["common"]}
         self.simulate(self.case("constant_torque", duration_s=0.001, samples=2), "--error", 1e-4)
         self.assertEqual(shared()["what turns the shaft"], "its torque is given")
@@ -250,10 +257,10 @@ class RestTest(SimulateTest):
         self.assertIn("rpm", error)
         case, options = self.with_oil(duration_s=0.012, kind="torque", torque_Nm=2000, file="")
         self.assertIn("course-overspeed", self.simulate(case, *options, "--model", "analytic", "--error", 1e-4).stdout)
-        self.assertEqual({w["name"] for w in self.report()["warnings"]}, {"course-overspeed", "course-vacuum"})
+        self.assertEqual(set(self.warnings()), {"course-overspeed", "course-vacuum"})
         case, options = self.with_oil()
         self.simulate(case, *options, "--model", "analytic", "--error", 1e-4)
-        self.assertEqual(self.report()["warnings"], [])
+        self.assertEqual(self.warnings(), [])
 
     def test_options_without_effect_on_oil_are_refused(self):
         case, options = self.with_oil()
@@ -330,6 +337,32 @@ class TrajectoryTest(SimulateTest):
                     peak = max(abs(float(row[column])) for row in reference)
                     for x, y in zip(found, reference):
                         self.assertLess(abs(float(x[column]) - float(y[column])), 1e-7 * peak + 1e-9, column)
+
+    def test_rows_between_steps_of_the_pressure_are_counted(self):
+        """At rows on an edge each model has the pressure of one side of it: no difference of the models."""
+        rated = base.REPO / "cases" / "bap63_rated.toml"
+        step = [option for change in ("pressure.transition_deg=0", "drive.kind=speed", "drive.duration_s=0.04", "drive.samples=40")
+                for option in ("--set", change)]
+        out = self.simulate(rated, *step).stdout
+        rows = [self.table(f"out/simulation_{model}.csv") for model in ("analytic", "multibody")]
+        pressures = [f"p_{k}_bar" for k in range(1, 6)]
+        between = [i for i, both in enumerate(zip(*rows)) if any(both[0][p] != both[1][p] for p in pressures)]
+        self.assertTrue(between)
+        self.assertTrue(all(abs(math.remainder(float(rows[0][i]["psi_deg"]), 36)) < 1e-8 for i in between))
+        self.assertRegex(out, rf"The trajectories agree: .*Not compared: {len(between)} of 41 rows, at which the models stand on different sides of a step")
+        self.assertTrue(dict(self.section("Difference")["facts"])["rows that are not compared"].startswith(f"{len(between)} of 41: "))
+        # Without steps every row is compared.
+        self.assertNotIn("Not compared", self.simulate(rated, *step[2:]).stdout)
+
+    def test_the_headline_states_the_largest_difference(self):
+        out = self.simulate(self.case(duration_s=0.004, samples=40), "--error", 1e-5).stdout
+        share, group, time_s = re.search(r"largest difference (\S+) of peak \((.*?), at (\S+) s\)", out).groups()
+        table = self.section("Difference")["table"]
+        rows = [dict(zip(table["columns"], row)) for row in table["rows"]]
+        largest = max(rows, key=lambda row: row["in time, of peak"])
+        self.assertEqual((share, group, time_s), (f"{largest['in time, of peak']:.1e}", largest["group"], f"{largest['at, s']:.4g}"))
+        worst = max(row["of the tolerance"] for row in rows)
+        self.assertRegex(out, rf"(s\), |at most ){worst:.2g} of the tolerance \(".replace("+", r"\+"))
 
     def test_a_loose_multibody_run_differs(self):
         case = self.case(duration_s=0.002, samples=20)
