@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/periodic_spline.h"
 #include "reference_angles.h"
+#include "reference_resampling.h"
 
 namespace bentaxis::compare {
 namespace {
@@ -48,6 +52,22 @@ double mean_difference(const std::vector<double>& theirs, const std::vector<doub
   return mean;
 }
 
+// A column over the turn, in the order of the angles: those of a turn run backwards fall.
+struct Curve {
+  std::vector<double> theta_deg, values;
+};
+Curve curve_of(const ResultTable& table, std::size_t column) {
+  std::map<double, double> points;
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    points[reduced(table.theta_deg[row])] = table.at(row, column);
+  Curve curve;
+  for (const auto& [angle, value] : points) {
+    curve.theta_deg.push_back(angle);
+    curve.values.push_back(value);
+  }
+  return curve;
+}
+
 }  // namespace
 
 Hints::Hints(const ResultTable& reference, const ResultTable& result)
@@ -85,63 +105,75 @@ std::string Hints::of(const ChannelComparison& channel) const {
     return std::abs(factor + 1) < kExplained
                ? std::string("the reference has the opposite sign")
                : fmt::format("the result is {:.7g} times the reference", factor);
-  const double shift = best_shift(column, ours);
-  if (shift != 0 && shifted_rms(column, ours, shift) <= kExplainedByShift * original)
-    return fmt::format("the result is the reference shifted by about {:+.2f} deg", shift);
+  const Shift shift = best_shift(column, ours, period_of(channel.channel));
+  if (shift.deg != 0 && shift.rms <= kExplainedByShift * original)
+    return fmt::format("the result is the reference shifted by about {:+.2f} deg", shift.deg);
   return "";
 }
 
-double Hints::shifted_rms(std::size_t column, const std::vector<double>& ours,
-                          double shift) const {
-  std::vector<double> moved;
-  for (const auto row : rows_) moved.push_back(spline(column)(result_.theta_deg[row] - shift));
-  return rms(moved, ours);
+double Hints::period_of(const Channel& channel) const {
+  int pistons = 1;
+  for (const Channel& other : result_.channels) pistons = std::max(pistons, other.piston);
+  if (channel.piston > 0 || pistons == 1 || result_.rows() < 3) return 360;
+  constexpr double kRoundOff = 1e-9;  // of peak
+  const Curve curve = curve_of(result_, result_.find(channel.name));
+  const PeriodicSpline spline(curve.theta_deg, curve.values);
+  const std::vector<double> errors = resampling_errors(curve.theta_deg, curve.values);
+  const double round_off = kRoundOff * result_.peak(channel.group);
+  const auto repeats_after = [&](double period) {
+    for (std::size_t i = 0; i < curve.values.size(); ++i) {
+      const double before = reduced(curve.theta_deg[i] - period);
+      const bool is_point = find_angle(curve.theta_deg, before, kSameAngle) < curve.values.size();
+      const double off = is_point ? 0 : errors[interval_of(curve.theta_deg, before)];
+      if (std::abs(spline(before) - curve.values[i]) > off + round_off) return false;
+    }
+    return true;
+  };
+  // An odd number of pistons under an ideal pressure repeats some curves after half a pitch.
+  for (const double period : {180.0 / pistons, 360.0 / pistons})
+    if (repeats_after(period)) return period;
+  return 360;
 }
 
-double Hints::best_shift(std::size_t column, const std::vector<double>& ours) const {
-  if (reference_.rows() < 3) return 0;
-  struct Shift {
-    double deg, rms;
+Hints::Shift Hints::best_shift(std::size_t column, const std::vector<double>& ours,
+                               double period) const {
+  if (reference_.rows() < 3) return {};
+  const Curve curve = curve_of(reference_, column);
+  const PeriodicSpline spline(curve.theta_deg, curve.values);
+  // Shifts by a period more are the same, although the spline leaves another rest of each.
+  const auto at = [&](double deg) {
+    Shift found{deg, std::numeric_limits<double>::max()};
+    for (double same = deg; same < deg + 360 - period / 2; same += period) {
+      std::vector<double> moved;
+      for (const auto row : rows_) moved.push_back(spline(result_.theta_deg[row] - same));
+      found.rms = std::min(found.rms, rms(moved, ours));
+    }
+    return found;
   };
-  const auto at = [&](double deg) { return Shift{deg, shifted_rms(column, ours, deg)}; };
   const auto search = [&](Shift best, double reach, double step) {
     const double around = best.deg;
     for (double deg = around - reach; deg <= around + reach; deg += step)
       if (const Shift there = at(deg); there.rms < best.rms) best = there;
     return best;
   };
-  // A curve that repeats fits at several shifts: of those that are as good the smallest.
+  // A curve may fit at several shifts: of those that are as good the smallest.
   std::vector<Shift> degrees;
-  for (int deg = -181; deg <= 181; ++deg) degrees.push_back(at(deg));
+  const int half = static_cast<int>(std::ceil(period / 2)) + 1;
+  for (int deg = -half; deg <= half; ++deg) degrees.push_back(at(deg));
   std::vector<Shift> fits;
   for (std::size_t i = 1; i + 1 < degrees.size(); ++i)
-    if (degrees[i].rms <= degrees[i - 1].rms && degrees[i].rms <= degrees[i + 1].rms)
+    if (degrees[i].rms <= degrees[i - 1].rms && degrees[i].rms <= degrees[i + 1].rms) {
       fits.push_back(search(search(degrees[i], 1, 0.1), 0.1, 0.01));
+      fits.back().deg = std::remainder(fits.back().deg, period);
+    }
   const Shift none = at(0);
   Shift best = none;
   for (const Shift& fit : fits)
     if (fit.rms < best.rms) best = fit;
   const double as_good = best.rms + kAsGood * none.rms;
   for (const Shift& fit : fits)
-    if (fit.rms <= as_good && std::abs(fit.deg) < std::abs(best.deg)) best.deg = fit.deg;
-  return best.deg;
-}
-
-const PeriodicSpline& Hints::spline(std::size_t column) const {
-  auto it = splines_.find(column);
-  if (it == splines_.end()) {
-    // Falling angles of a turn run backwards are put in order.
-    std::map<double, double> points;
-    for (std::size_t row = 0; row < reference_.rows(); ++row)
-      points[reduced(reference_.theta_deg[row])] = reference_.at(row, column);
-    std::vector<double> x, y;
-    for (const auto& [angle, value] : points) {
-      x.push_back(angle);
-      y.push_back(value);
-    }
-    it = splines_.emplace(column, PeriodicSpline(x, y)).first;
-  }
-  return it->second;
+    if (fit.rms <= as_good && std::abs(fit.deg) < std::abs(best.deg)) best = fit;
+  return best;
 }
 
 }  // namespace bentaxis::compare

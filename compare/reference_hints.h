@@ -1,12 +1,10 @@
 // What a curve that differs from a reference looks like.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
 #include "bentaxis/compare/comparison.h"
-#include "bentaxis/pump/periodic_spline.h"
 
 namespace bentaxis::compare {
 
@@ -17,16 +15,19 @@ class Hints {
   std::string of(const ChannelComparison& channel) const;
 
  private:
+  // Of the reference towards larger angles, and what it leaves.
+  struct Shift {
+    double deg = 0, rms = 0;
+  };
   std::vector<double> values_of(const ResultTable& table, std::size_t column) const;
-  // The reference moved by `shift` degrees towards larger angles, against ours.
-  double shifted_rms(std::size_t column, const std::vector<double>& ours, double shift) const;
-  double best_shift(std::size_t column, const std::vector<double>& ours) const;
-  const PeriodicSpline& spline(std::size_t column) const;
+  // By how many degrees a curve of the result may be moved so that its points cannot tell: half the
+  // pitch of the pistons, the pitch, or a whole turn.
+  double period_of(const Channel& channel) const;
+  Shift best_shift(std::size_t column, const std::vector<double>& ours, double period) const;
 
   const ResultTable& reference_;
   const ResultTable& result_;
   std::vector<std::size_t> rows_;
-  mutable std::map<std::size_t, PeriodicSpline> splines_;
 };
 
 }  // namespace bentaxis::compare
