@@ -245,6 +245,58 @@ class OwnRecordTest(ImportTest):
         self.assert_mentions(self.description(), "euler_deg = [17.3, 41.9, -8.2]")
         self.regress(DONE)
 
+    def test_a_coarse_record_is_shown_at_its_own_angles(self):
+        """36 angles of the case itself: nothing differs, however little a spline between them would be worth."""
+        self.run_program("run", base.REPO / "cases" / "bap63_rated.toml", "--model", "analytic", "--set",
+                         "operation.samples_per_revolution=36", "--channels", "Rb1_x1_N,Rb1_y1_N,Rb1_z1_N,Td_z1_Nm,Rs_1_z2_N", "--out", "run")
+        out = self.new(self.folder / "run" / "analytic.csv").out
+        differences = [float(d) for d in re.findall(r"\d\.\d{7} +(\d\.\de[+-]\d\d)", out)]
+        self.assertGreaterEqual(len(differences), 3)
+        self.assertLess(max(differences), 1e-10)
+
+    def test_one_of_two_vectors_in_turned_axes_is_wrong(self):
+        """Two vectors do not show which of them has the wrong sign; with a third one they do."""
+        self.run_program("run", base.REPO / "cases" / "bap63_rated.toml", "--model", "analytic", "--set",
+                         "operation.samples_per_revolution=180", "--out", "run")
+        with open(self.folder / "run" / "analytic.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        c, s = math.cos(math.radians(40)), math.sin(math.radians(40))
+        vectors = {"A": [f"Rb1_{axis}1_N" for axis in "xyz"], "B": [f"Rs_1_{axis}2_N" for axis in "xyz"],
+                   "C": [f"Rs_3_{axis}2_N" for axis in "xyz"]}
+
+        def turned(v, of_s2):
+            if of_s2:  # into S1
+                v = [v[0], c * v[1] + s * v[2], -s * v[1] + c * v[2]]
+            a, b = math.radians(25), math.radians(-50)
+            v = [v[0] * math.cos(a) + v[1] * math.sin(a), v[1] * math.cos(a) - v[0] * math.sin(a), v[2]]
+            return [v[0], v[1] * math.cos(b) + v[2] * math.sin(b), v[2] * math.cos(b) - v[1] * math.sin(b)]
+
+        def record(names, wrong, axis):
+            lines = ["angle [deg]," + ",".join(f"{name}{axis} [N]" for name in names for axis in "xyz")]
+            for row in rows:
+                values = []
+                for name in names:
+                    v = turned([float(row[column]) for column in vectors[name]], name != "A")
+                    if name == wrong:
+                        v[axis] = -v[axis]
+                    values += v
+                lines.append(",".join(map(repr, [float(row["theta_deg"]), *values])))
+            (self.folder / "record.csv").write_text("\n".join(lines) + "\n")
+            (self.folder / "ref_mapping.toml").unlink(missing_ok=True)
+            return self.new("record.csv").out
+
+        ours = {"A": "Rb1", "B": "Rs_1"}
+        for wrong in ours:
+            for axis in range(3):
+                out = record("AB", wrong, axis)
+                self.assert_mentions(out, "not decided: a component of Rb1 or Rs_1 has the wrong sign")
+                self.assertIn("one_is_wrong = [\"Rb1\", \"Rs_1\"]", (self.folder / "ref_mapping.toml").read_text())
+                out = record("ABC", wrong, axis)
+                self.assertNotIn("not decided", out)
+                worst = out.splitlines()[1]
+                self.assertIn(f" {ours[wrong]} ", worst)
+        self.assertNotIn("not decided", record("AB", "", 0))
+
     def test_the_number_behind_the_piston_counts(self):
         names = [(k, axis) for k in range(1, 6) for axis in "xyz"]
         file = self.record([f"probe2 piston{k} Rs F{axis.upper()} [N]" for k, axis in names],

@@ -14,7 +14,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
-#include "mapping_guess_pieces.h"
+#include "mapping_assignment.h"
 
 namespace bentaxis::study::mapping {
 namespace {

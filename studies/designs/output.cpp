@@ -10,6 +10,7 @@
 #include "bentaxis/analytic/budget.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/validity.h"
+#include "bentaxis/compare/reference.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
@@ -27,6 +28,8 @@
 
 namespace bentaxis::designs {
 namespace {
+
+using compare::vector_name;
 
 const std::vector<std::string>& statistic_names() {
   static const std::vector<std::string> names = {"mean", "min", "max", "peak", "rms", "range"};
@@ -57,11 +60,6 @@ std::string meaning_of(const Channel& c, bool vector) {
         (c.point.starts_with("about ") || c.point.starts_with("from ") ? ", " : ", at ") + c.point;
   if (!c.frame.empty()) text += vector ? ", magnitude" : ", along " + c.axis;
   return text;
-}
-
-// The vector a channel is a component of: "Rs_3".
-std::string vector_name(const Channel& c) {
-  return c.quantity + (c.piston > 0 ? "_" + std::to_string(c.piston) : "");
 }
 
 bool can_be_asked_for(const Channel& c) { return c.kind != ChannelKind::check; }

@@ -112,6 +112,12 @@ std::string curve_text(const MappingGuess& guess) {
                    : "# Not recognised, although a name or size suggests a channel: map each, or "
                      "put it into ignore.\nundecided = " +
                          list_text(open) + "\n";
+  const std::string wrong =
+      curve.one_is_wrong.empty()
+          ? ""
+          : "# A component of one of these vectors has the wrong sign; the others do not show in "
+            "which.\none_is_wrong = " +
+                list_text(curve.one_is_wrong) + "\n";
   std::vector<std::string> ignored = curve.ignored;
   std::erase_if(ignored, [&](const std::string& name) { return contains(open, name); });
   std::string text = fmt::format(
@@ -122,8 +128,9 @@ std::string curve_text(const MappingGuess& guess) {
       "us, min with the speed of the case\nsign = {}\noffset_deg = {}\n",
       toml_text(curve.file.filename()),
       curve.sheet.empty() ? "" : "sheet = " + toml_text(curve.sheet) + "\n", curve.points,
-      undecided, list_text(ignored), toml_text(curve.angle.column), toml_text(curve.angle.unit),
-      curve.angle.sign < 0 ? -1 : 1, number_text(curve.angle.offset_deg));
+      undecided + wrong, list_text(ignored), toml_text(curve.angle.column),
+      toml_text(curve.angle.unit), curve.angle.sign < 0 ? -1 : 1,
+      number_text(curve.angle.offset_deg));
   if (curve.angle.rounding_deg > 0)
     text += fmt::format("rounding_deg = {:.2g}  # half a unit of its last digit\n",
                         curve.angle.rounding_deg);
@@ -165,7 +172,9 @@ MappingGuess guess_reference(const Case& the_case, const fs::path& file, const s
   sampled.operation.samples_per_revolution = kGuessSamples;
   const PreparedCase ready = prepare(std::move(sampled));
   return guess_mapping(table, run_turn(ready, Model::analytic), frames_of(the_case),
-                       6 * the_case.operation.speed_rpm);
+                       6 * the_case.operation.speed_rpm, [&](const std::vector<double>& theta_deg) {
+                         return run_at_angles(ready, theta_deg, {.model = Model::analytic});
+                       });
 }
 
 std::string proposal_text(const MappingGuess& guess) {

@@ -19,7 +19,7 @@ struct MappingProposal {
   int sign = 1;
   std::string unit;
   double correlation = 0;  ///< of both curves about their means, in the end mapped
-  double difference = 0;   ///< root mean square, over that of the curve
+  double difference = 0;   ///< root mean square at the record's angles, over that of the curve
   std::string remark;      ///< "its name says so, its curve does not", ..
 };
 
@@ -57,8 +57,11 @@ struct MappingGuess {
 /// @param model  one turn at equal steps
 /// @param frames  of the case
 /// @param degrees_per_second  of the shaft, for a record over time
+/// @param model_at  the same at other angles: what is shown of a proposal is compared at the
+///                  record's own, and nothing is interpolated; no function: at those of `model`
 /// @throws InputError where no column can be the angle or no column fits any channel
 MappingGuess guess_mapping(const ForeignTable& table, const ResultTable& model,
-                           const compare::FrameAxes& frames, double degrees_per_second);
+                           const compare::FrameAxes& frames, double degrees_per_second,
+                           const compare::ResultAt& model_at = {});
 
 }  // namespace bentaxis::study
