@@ -580,6 +580,69 @@ class OwnAnglesTest(RegressTest):
         size = float(re.search(r"differs +ref +Rs +\S+ N +(\S+)", out)[1])
         self.assertGreater(size, 0.25)
 
+    DESCRIPTION = """schema = 1
+kind = "external"
+case = "{case}"
+source = "the analytic model"
+how_made = "regress_test.py"
+who_may_change = "nobody"
+digits = 16
+[tolerance]
+relative = 1e-6
+[[curve]]
+file = "curve.csv"
+points = {points}
+models = ["analytic"]
+"""
+
+    def said_of(self, rows):
+        """What regress says of all curves of the analytic model's, as a reference of the case."""
+        folder = self.folder / "ref"
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+        (folder / "curve.csv").write_text("".join(",".join(row) + "\n" for row in rows))
+        case = base.REPO / "cases" / f"{self.CASE}.toml"
+        (folder / "description.toml").write_text(self.DESCRIPTION.format(case=case, points=len(rows) - 1))
+        return self.regress("ref", status=OUT_OF_TOLERANCE)
+
+    def all_curves(self, *changes):
+        self.run_program("run", self.CASE, "--model", "analytic", *(w for c in changes for w in ("--set", c)), "--out", "all")
+        return list(csv.reader(io.StringIO((self.folder / "all" / "analytic.csv").read_text())))
+
+    def test_a_shift_is_the_smallest_that_the_pistons_allow(self):
+        """Of all curves: those of the whole pump come again after 72 deg, and a spline through 36 points leaves the more of 3 deg."""
+        header, *fine = self.all_curves("operation.samples_per_revolution=720")
+        for points in (36, 72):
+            for shift in (3, -7.5, 17):
+                step, by = 720 // points, round(2 * shift)
+                rows = [[fine[i][0], *fine[(i + by) % 720][1:]] for i in range(0, 720, step)]
+                hints = re.findall(r"(\S+) at \S+ deg(?: and \d+ more)?: the result is the reference shifted by about (\S+) deg",
+                                   self.said_of([header, *rows]))
+                self.assertGreaterEqual(len(hints), 11, hints)
+                for channel, said in hints:
+                    # What half a pitch of 36 deg moves is told from it by more points alone.
+                    self.assertAlmostEqual(float(said), shift, delta=0.15, msg=f"{channel}, {points} points, {shift} deg")
+
+    def test_another_operating_condition_is_named_before_a_dimension(self):
+        for changes, words in (
+                (["operation.speed_rpm=3000"], "operation.speed_rpm 1500 -> 3000 rpm (+100 %) explains"),
+                (["pressure.delivery_bar=100"], "pressure.delivery_bar 275 -> 100 bar (-63.6 %) explains"),
+                (["operation.speed_rpm=2000", "pressure.delivery_bar=200"],
+                 "operation.speed_rpm 1500 -> 2000 rpm (+33.3 %) and pressure.delivery_bar 275 -> 200 bar (-27.3 %) together")):
+            rows = self.all_curves("operation.samples_per_revolution=36", *changes)
+            for columns in (range(len(rows[0])), [0, *(rows[0].index(c) for c in ("Rs_1_z3_N", "Rb1_y1_N", "Td_z1_Nm", "Rcs_z4_N"))]):
+                out = self.said_of([[row[c] for c in columns] for row in rows])
+                self.assert_mentions(out, words, "another operating condition than the case")
+        # Of the torque alone a bore explains as much: the pressure is named, the bore behind it.
+        rows = self.all_curves("operation.samples_per_revolution=36", "pressure.delivery_bar=280")
+        column = rows[0].index("Td_z1_Nm")
+        out = self.said_of([[row[0], row[column]] for row in rows])
+        self.assertRegex(out, r"pressure\.delivery_bar 275 -> 280 bar \(\+1\.82 %\) explains 100 % .*distinguish it from: .*pump\.bore_diameter_mm")
+        # A dimension that is wrong is named all the same.
+        out = self.said_of(self.all_curves("operation.samples_per_revolution=36", "pump.bore_diameter_mm=22.8"))
+        self.assert_mentions(out, "pump.bore_diameter_mm 22.5 -> 22.8 mm")
+        self.assertNotIn("operating condition", out)
+
     def test_no_pump_has_what_would_explain_an_offset(self):
         """The suction pressure that comes nearest, -12 bar, is below absolute vacuum: it is neither named nor listed."""
         rows = self.record(lambda i: i % 20 == 3)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "bentaxis/pump/lists.h"
@@ -23,11 +24,22 @@ double percent(double share) { return std::floor(1000 * share) / 10; }
 
 }  // namespace
 
+bool is_operating_condition(const std::string& name) {
+  static const std::vector<std::string> kConditions = {
+      "operation.speed_rpm", "pressure.delivery_bar", "pressure.suction_bar", "load.cracking_bar"};
+  return contains(kConditions, name);
+}
+
 const ExplainingChange* Explanation::cause() const {
   if (!left_out.empty() && left_out.front().share >= kPair) return &left_out.front();
-  if (!singles.empty() && singles.front().share >= kSingle) return &singles.front();
-  if (!pairs.empty() && pairs.front().share >= kPair) return &pairs.front();
-  return nullptr;
+  const auto first = [](const std::vector<ExplainingChange>& changes, double enough) {
+    const auto found = std::find_if(changes.begin(), changes.end(),
+                                    [&](const auto& change) { return change.share >= enough; });
+    return found == changes.end() ? nullptr : &*found;
+  };
+  const ExplainingChange *const single = first(singles, kSingle), *const pair = first(pairs, kPair);
+  if (single == nullptr || pair == nullptr) return single != nullptr ? single : pair;
+  return pair->rest_over_allowed <= 1 && single->rest_over_allowed > 1 ? pair : single;
 }
 
 std::string Explanation::text() const {
@@ -66,6 +78,9 @@ std::string Explanation::text() const {
   text += others.empty() ? fmt::format("; nothing else above {:g} %", 100 * kMentioned)
                          : fmt::format("; alone {}", fmt::join(others, ", "));
   text += ".";
+  if (std::all_of(found->parameters.begin(), found->parameters.end(),
+                  [](const auto& p) { return is_operating_condition(p.name); }))
+    text += " The reference seems to be of another operating condition than the case.";
   if (!same.empty())
     text += fmt::format(" These data do not distinguish it from: {}.", fmt::join(same, ", "));
   return text;

@@ -24,6 +24,7 @@ using study::Explanation;
 
 constexpr std::size_t kMostAngles = 720;  // that are looked at
 constexpr std::size_t kRefined = 6;       // changes that are computed again, best of the linear fit
+constexpr std::size_t kRefinedPairs = 3;  // they cost more each
 constexpr double kWorthRefining = 0.1;    // share by the linear fit
 constexpr int kSteps = 6, kHalvings = 6;
 constexpr double kDone = 1e-12;  // of the difference, or by which a step still lowers it
@@ -69,7 +70,9 @@ class Search {
     found.left_out = leave_out();
     if (found.cause() != nullptr) return found;
     found.singles = refine(ranked_singles(), progress);
-    if (found.cause() == nullptr) found.pairs = refine(ranked_pairs(), progress);
+    const ExplainingChange* const cause = found.cause();
+    if (cause == nullptr || (all_conditions(*cause) && cause->rest_over_allowed > 1))
+      found.pairs = refine(ranked_pairs(cause != nullptr), progress);
     return found;
   }
 
@@ -183,7 +186,28 @@ class Search {
     return (first * first + second * second / (1 - cosine * cosine)) / difference_;
   }
 
-  std::vector<Choice> best(std::vector<Choice> choices) const {
+  // How well a change explains: an operating condition is named before what is as good, and of
+  // several of them the one that changes least.
+  static double worth(const ExplainingChange& change) {
+    if (!all_conditions(change)) return change.share;
+    double largest = 0;
+    for (const auto& p : change.parameters)
+      largest =
+          std::max(largest, std::abs(p.to - p.from) / std::max(std::abs(p.to), std::abs(p.from)));
+    return change.share + Explanation::kAsWell * (1 - std::min(1.0, largest) / 2);
+  }
+  static bool all_conditions(const ExplainingChange& change) {
+    return std::all_of(change.parameters.begin(), change.parameters.end(),
+                       [](const auto& p) { return study::is_operating_condition(p.name); });
+  }
+  bool all_conditions(const Choice& choice) const {
+    return std::all_of(choice.begin(), choice.end(), [&](std::size_t v) {
+      return study::is_operating_condition(variables_[v].name());
+    });
+  }
+
+  // The best of them, and all of operating conditions alone.
+  std::vector<Choice> best(std::vector<Choice> choices, std::size_t most) const {
     std::vector<std::pair<double, Choice>> ranked;
     for (Choice& choice : choices)
       if (const double share = linear_share(choice); share >= kWorthRefining)
@@ -192,23 +216,22 @@ class Search {
                      [](const auto& x, const auto& y) { return x.first > y.first; });
     std::vector<Choice> list;
     for (auto& one : ranked)
-      if (list.size() < kRefined) list.push_back(std::move(one.second));
+      if (list.size() < most || all_conditions(one.second)) list.push_back(std::move(one.second));
     return list;
   }
 
   std::vector<Choice> ranked_singles() const {
     std::vector<Choice> all;
     for (std::size_t v = 0; v < variables_.size(); ++v) all.push_back({v});
-    return best(std::move(all));
+    return best(std::move(all), kRefined);
   }
 
-  std::vector<Choice> ranked_pairs() const {
+  std::vector<Choice> ranked_pairs(bool of_conditions) const {
     std::vector<Choice> all;
     for (std::size_t a = 0; a < variables_.size(); ++a)
-      for (std::size_t b = a + 1; b < variables_.size(); ++b) all.push_back({a, b});
-    std::vector<Choice> list = best(std::move(all));
-    if (list.size() > 3) list.resize(3);  // they cost more each
-    return list;
+      for (std::size_t b = a + 1; b < variables_.size(); ++b)
+        if (!of_conditions || all_conditions({a, b})) all.push_back({a, b});
+    return best(std::move(all), kRefinedPairs);
   }
 
   // What is compared, of changed variables; nothing where they make no pump that runs.
@@ -345,7 +368,8 @@ class Search {
 
   static bool is_small(const ExplainingChange& change) {
     return std::all_of(change.parameters.begin(), change.parameters.end(), [](const auto& p) {
-      return p.from == 0 || std::abs(p.to - p.from) <= Explanation::kLargest * std::abs(p.from);
+      return p.from == 0 || study::is_operating_condition(p.name) ||
+             std::abs(p.to - p.from) <= Explanation::kLargest * std::abs(p.from);
     });
   }
 
@@ -370,7 +394,7 @@ class Search {
       if (progress) progress(static_cast<double>(++done) / static_cast<double>(choices.size()));
     }
     std::stable_sort(changes.begin(), changes.end(),
-                     [](const auto& a, const auto& b) { return a.share > b.share; });
+                     [](const auto& a, const auto& b) { return worth(a) > worth(b); });
     return changes;
   }
 

@@ -7,6 +7,10 @@
 
 namespace bentaxis::study {
 
+/// Whether a parameter is a setting of the rig and no property of the pump: its speed and
+/// pressures.
+bool is_operating_condition(const std::string& name);
+
 /// What changed parameters make of a difference, computed again with them: one, two, or all that
 /// are left out together. The difference is the
 /// sum of its squares over all channels compared, each over the peak of its reaction.
@@ -29,8 +33,11 @@ struct Explanation {
   static constexpr double kPair = 0.99;         ///< and from which two do, where no single one does
   static constexpr double kWorthNaming = 0.01;  ///< less explains nothing
   static constexpr double kMentioned = 0.4;     ///< other parameters are named above this
-  static constexpr double kLargest =
-      0.5;  ///< change over the value beyond which it is no wrong number
+  /// Change over the value beyond which it is no wrong number; an operating condition may be any.
+  static constexpr double kLargest = 0.5;
+  /// An operating condition is named before what explains more of the difference by less than this
+  /// share.
+  static constexpr double kAsWell = 0.002;
   static constexpr double kLookSame =
       0.999;  ///< correlation of derivatives that cannot be told apart
 
