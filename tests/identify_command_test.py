@@ -221,9 +221,13 @@ class IdentifyTest(ProgramTest):
         self.assertIn(f"{widths[least]:.2g} % ({least}) .. {widths[most]:.2g} % ({most}) of peak", result.out)
         self.assertRegex(result.out, rf"pump\.bore_diameter_mm = {float(row['identified']):.6g} mm")
         best = tables["Most useful further measurements"]
-        gains = [m["all bands narrower by, %"] for m in best]
-        self.assertEqual(gains, sorted(gains, reverse=True))
-        self.assertIn(f"The most useful further measurement is {best[0]['measurement']}: ", result.out)
+        # What every rig measures first, what none does last; of each kind the most useful first.
+        kinds = ["the torque meter of a test rig measures it", "force sensors in the seats of the shaft's bearings measure it",
+                 "no test rig measures it"]
+        ranks = [(kinds.index(m["on a test rig"]), -m["all bands narrower by, %"]) for m in best]
+        self.assertEqual(ranks, sorted(ranks))
+        self.assertEqual({m["measurement"].split(":")[1].split("_")[0] for m in best if m["on a test rig"] == kinds[0]}, {"Td"})
+        self.assertIn(f"The most useful further measurement is {best[0]['measurement']}: {kinds[0]}. It would narrow", result.out)
 
     def test_the_identified_pump_is_a_case_that_runs(self):
         self.identify(DATA, "--fit-only")
@@ -325,6 +329,30 @@ between = [38, 42]
         for word in words:
             self.assertIn(word, line)
         self.assertFalse((self.folder / "out" / "report.json").exists())
+
+    def test_data_that_determine_nothing_are_said_first(self):
+        """The torque does not depend on where the centre of mass of the block is."""
+        text = DATA.replace("pump.bore_diameter_mm", "block.centre_of_mass_z_mm").replace("between = [20, 25]", "between = [-60, -10]")
+        result = self.identify(text, "--fit-only")
+        self.assertTrue(result.out.split(":", 1)[1].strip().startswith("the data determine none of the 1 unknowns")
+                        or result.out.startswith("the data determine none of the 1 unknowns"), result.out)
+        self.assertNotIn("determine none", self.identify(DATA, "--fit-only").out)
+
+    def test_bounds_that_the_parameter_may_not_have(self):
+        text = DATA.replace("pump.bore_diameter_mm", "friction.shaft_torque_factor")
+        for bounds, value in (("[0.5, 1.2]", "1.2"), ("[-0.1, 0.9]", "-0.1")):
+            wrong = text.replace("between = [20, 25]", f"between = {bounds}")
+            error = self.identify(wrong, "--fit-only", status=BAD_INPUT).err
+            self.assert_mentions(error, "data.toml:", "between", "friction.shaft_torque_factor", value, "(0, 1]")
+        error = self.identify(DATA, "--fit-only", "--vary", "pump.tilt_deg=30:95", status=BAD_INPUT).err
+        self.assert_mentions(error, "--vary", "pump.tilt_deg", "95", "[0, 90)")
+
+    def test_the_file_of_data_is_named(self):
+        number = DATA[DATA.index("[[number]]"):]
+        for text, more, words in ((f"schema = 1\n{number}", (), ("nothing is unknown",)),
+                                  (DATA, ("--vary", "pump.bore_diameter_mm=20:25"), ("bore_diameter_mm", "twice")),
+                                  (DATA[:DATA.index("[[number]]")], (), ("nothing to which",))):
+            self.assert_mentions(self.identify(text, "--fit-only", *more, status=BAD_INPUT).err, "data.toml", *words)
 
     def test_options_without_effect_are_refused(self):
         for option in ("--steps", "--draws", "--measured"):

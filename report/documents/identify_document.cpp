@@ -252,20 +252,34 @@ Section reactions_section(const DataModel& model, const Identification& result) 
   return section;
 }
 
+const char* measured_text(Measured measured) {
+  switch (measured) {
+    case Measured::on_a_rig:
+      return "the torque meter of a test rig measures it";
+    case Measured::at_bearings:
+      return "force sensors in the seats of the shaft's bearings measure it";
+    case Measured::nowhere:
+      break;
+  }
+  return "no test rig measures it";
+}
+
 Section candidates_section(const Identification& result) {
   constexpr std::size_t kShown = 12;
   Section section;
   section.title = "Most useful further measurements";
   section.text =
       "By how much the bands would become narrower, mean over the reactions, if that number were "
-      "measured too: linear, from the covariances of the draws.";
-  section.table.columns = {"measurement", "measured to, standard",
-                           "unit",        "all bands narrower by, %",
-                           "most",        "that one by, %"};
+      "measured too: linear, from the covariances of the draws. What every test rig measures comes "
+      "first, then what force sensors at the bearings do, then forces that only a model gives.";
+  section.table.columns = {
+      "measurement", "measured to, standard", "unit",         "all bands narrower by, %",
+      "most",        "that one by, %",        "on a test rig"};
   for (std::size_t c = 0; c < std::min(kShown, result.candidates.size()); ++c) {
     const Candidate& k = result.candidates[c];
-    section.table.rows.push_back(
-        {k.output.name, k.deviation, k.output.unit, 100 * k.shrinks, k.most, 100 * k.most_shrinks});
+    section.table.rows.push_back({k.output.name, k.deviation, k.output.unit, 100 * k.shrinks,
+                                  k.most, 100 * k.most_shrinks,
+                                  std::string(measured_text(k.measured))});
   }
   return section;
 }
@@ -349,9 +363,15 @@ std::string headline_of(const DataModel& model, const Identification& result) {
     return result.worst.empty() ? text
                                 : text + "; worst: " + worst_line(model, result, result.worst[0]);
   for (const Direction& direction : result.information.directions) open += direction.strength < 2;
-  if (result.held.empty())
+  const auto unknowns = static_cast<int>(model.size());
+  if (result.held.empty() && open == unknowns)
+    text = fmt::format(
+        "the data determine none of the {} unknowns: no direction becomes less than half as wide "
+        "as the bounds, and the identified values are those of the case; {}",
+        unknowns, text);
+  else if (result.held.empty())
     text += fmt::format("; {} of {} directions become less than half as wide as the bounds",
-                        static_cast<int>(model.size()) - open, model.size());
+                        unknowns - open, unknowns);
   if (result.bands.empty()) return text;
   int predicted = 0, missed = 0;
   for (std::size_t i = 0; i < model.data().data.size(); ++i)
@@ -373,6 +393,24 @@ std::string headline_of(const DataModel& model, const Identification& result) {
                             unsettled(result) ? "roughly (posterior not converged) " : "",
                             100 * best->half_width, layout.channels()[best->column].name,
                             100 * worst->half_width, layout.channels()[worst->column].name);
+}
+
+// The best measurement that every rig makes, and that of sensors which a rig may have where they
+// would give more.
+std::string measurement_text(const Identification& result) {
+  const Candidate& first = result.candidates.front();
+  std::string text = fmt::format(
+      "The most useful further measurement is {}: {}. It would narrow the bands of the "
+      "reactions by {:.3g} % on average",
+      first.output.name, measured_text(first.measured), 100 * first.shrinks);
+  const auto other =
+      std::find_if(result.candidates.begin(), result.candidates.end(),
+                   [&](const Candidate& c) { return c.measured == Measured::at_bearings; });
+  if (first.measured == Measured::on_a_rig && other != result.candidates.end() &&
+      other->shrinks > first.shrinks)
+    text += fmt::format("; {} by {:.3g} % ({})", other->output.name, 100 * other->shrinks,
+                        measured_text(other->measured));
+  return text + ".";
 }
 
 // The unknowns with how well they are known, what the data leave open, and what would help.
@@ -413,10 +451,7 @@ std::vector<std::string> answers_of(const DataModel& model, const Identification
     answers.push_back(report::sentence(further_text(model, result)));
   }
   if (!result.candidates.empty() && result.held.empty())
-    answers.push_back(
-        fmt::format("The most useful further measurement is {}: it would narrow the "
-                    "bands of the reactions by {:.3g} % on average.",
-                    result.candidates[0].output.name, 100 * result.candidates[0].shrinks));
+    answers.push_back(measurement_text(result));
   return answers;
 }
 

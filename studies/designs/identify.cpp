@@ -292,11 +292,15 @@ DataModel::DataModel(Case base, IdentificationData data, bool kernel) {
   made->base = std::move(base);
   made->data = std::move(data);
   IdentificationData& all = made->data;
+  const std::string files =
+      all.files.empty() ? "identify"
+                        : joined(all.files, ", ", [](const auto& file) { return file.string(); });
   if (all.unknowns.empty())
-    throw InputError("identify: nothing is unknown: [[unknown]] in the data, or --vary");
+    throw InputError(files + ": nothing is unknown: give [[unknown]] there, or --vary");
   std::set<std::string> names;
   for (const Unknown& u : all.unknowns)
-    if (!names.insert(u.name()).second) throw InputError(u.name() + ": is unknown twice");
+    if (!names.insert(u.name()).second)
+      throw InputError(files + ": " + u.name() + ": is unknown twice, in the data or by --vary");
   for (const Condition& condition : all.conditions)
     made->branches.push_back(made->branch_of(condition));
   std::map<std::pair<std::size_t, std::string>, std::size_t> index;
@@ -326,7 +330,9 @@ DataModel::DataModel(Case base, IdentificationData data, bool kernel) {
   }
   if (std::none_of(all.data.begin(), all.data.end(),
                    [](const Datum& d) { return d.use == Use::fitted; }))
-    throw InputError("identify: the data contain nothing to which unknowns can be fitted");
+    throw InputError(files +
+                     ": contain nothing to which unknowns can be fitted: [[number]], "
+                     "[[window]] or [[curve]] with use = \"fitted\"");
   for (Implementation::State& state : made->states) sort_once(state.angles);
   if (kernel) made->use_kernel();
   implementation_ = std::move(made);

@@ -9,6 +9,7 @@
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/lists.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/words.h"
 #include "bentaxis/results/channels.h"
 
@@ -20,6 +21,13 @@ namespace fs = std::filesystem;
 constexpr double kEdge = 0.01;  // softness of a window's edge, of the window or of its limit
 constexpr NumberRange kPositiveNumber{0, HUGE_VAL, true, true};
 
+// A value that a case file would be refused for is none of a study.
+void require_allowed(const Variable& variable, double value, const char* what, const Case& base) {
+  if (const NumberRange range = variable.range(base); !range.contains(value))
+    throw InputError(variable.name() + ": " + what + " " + number_text(value) + " must be " +
+                     range.text());
+}
+
 // "TABLE.KEY=VALUE".
 std::pair<Variable, double> setting_of(const std::string& text, const Case& base) {
   const std::size_t equals = text.find('=');
@@ -27,6 +35,7 @@ std::pair<Variable, double> setting_of(const std::string& text, const Case& base
     throw InputError("\"" + text + "\": must be \"TABLE.KEY=VALUE\"");
   Variable variable(text.substr(0, equals), base);
   const double value = variable.value_of(text.substr(equals + 1));
+  require_allowed(variable, value, "the value", base);
   return {std::move(variable), value};
 }
 
@@ -58,11 +67,13 @@ auto under(TableReader& in, const std::string& key, const Job& job) {
   }
 }
 
-void check_bounds(const Unknown& unknown) {
+void check_bounds(const Unknown& unknown, const Case& base) {
   if (!(unknown.low < unknown.high))
     throw InputError(unknown.name() + ": the lower bound must be below the upper one");
   if (unknown.variable.discrete())
     throw InputError(unknown.name() + ": is not continuous: it cannot be identified");
+  require_allowed(unknown.variable, unknown.low, "the lower bound", base);
+  require_allowed(unknown.variable, unknown.high, "the upper bound", base);
 }
 
 Unknown read_unknown(TableReader in, const Case& base, const IdentificationData& data) {
@@ -76,7 +87,7 @@ Unknown read_unknown(TableReader in, const Case& base, const IdentificationData&
     if (unknown.prior->shape != Shape::normal && unknown.prior->shape != Shape::lognormal)
       in.fail("prior", "must be normal or lognormal; bounds alone are a uniform one");
   }
-  under(in, "between", [&] { check_bounds(unknown); });
+  under(in, "between", [&] { check_bounds(unknown, base); });
   in.text("reason", "");  // for whoever reads the file
   in.finish();
   return unknown;
@@ -223,7 +234,11 @@ Unknown unknown_of(const std::string& option, const std::string& text, const Cas
   const double low = variable.value_of(text.substr(equals + 1, colon - equals - 1));
   const double high = variable.value_of(text.substr(colon + 1));
   Unknown unknown{std::move(variable), low, high};
-  check_bounds(unknown);
+  try {
+    check_bounds(unknown, base);
+  } catch (const InputError& error) {
+    throw InputError(option + " " + text + ": " + error.what());
+  }
   return unknown;
 }
 
@@ -234,6 +249,7 @@ std::size_t Datum::size() const {
 
 void read_identification(const fs::path& file, const Case& base, IdentificationData& data) {
   const TomlFile toml = TomlFile::read(file, "file of data");
+  data.files.push_back(file);
   TableReader in = toml.root();
   in.integer("schema", 1, 1);
   const fs::path folder = file.parent_path();

@@ -132,6 +132,7 @@ void bands_of(const DataModel& model, const IdentifyOptions& options, Identifica
     const Moments of_measured = moments_of(measured);
     Candidate candidate;
     candidate.output = o;
+    candidate.measured = measured_as(layout.channels()[o.columns[0]].quantity);
     candidate.deviation = options.measured * result.bands[c / 3].peak;  // three of each reaction
     const double variance = of_measured.variance + candidate.deviation * candidate.deviation;
     for (std::size_t b = 0; b < result.bands.size() && variance > 0; ++b) {
@@ -156,7 +157,14 @@ void bands_of(const DataModel& model, const IdentifyOptions& options, Identifica
     result.candidates[c] = std::move(candidate);
   });
   std::stable_sort(result.candidates.begin(), result.candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.shrinks > b.shrinks; });
+                   [](const Candidate& a, const Candidate& b) {
+                     return std::pair(a.measured, -a.shrinks) < std::pair(b.measured, -b.shrinks);
+                   });
+}
+
+Measured measured_as(const std::string& quantity) {
+  if (quantity == "Td") return Measured::on_a_rig;
+  return quantity == "Rb1" || quantity == "Rb2" ? Measured::at_bearings : Measured::nowhere;
 }
 
 }  // namespace bentaxis::designs

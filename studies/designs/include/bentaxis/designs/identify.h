@@ -33,7 +33,8 @@ struct Unknown {
   /// "pump.tilt_deg", of a condition "peak load: pressure.delivery_bar".
   std::string name() const;
 };
-/// "NAME=LOW:HIGH". @throws InputError naming the option
+/// "NAME=LOW:HIGH". @throws InputError naming the option, also where the parameter itself may not
+/// have these values
 Unknown unknown_of(const std::string& option, const std::string& text, const Case& base);
 
 /// Settings of the rig or the publication under which data were taken.
@@ -79,6 +80,7 @@ struct IdentificationData {
   std::vector<Condition> conditions = {{""}};  ///< the first: the case itself
   std::vector<compare::PublishedVariant> variants;
   std::vector<Datum> data;
+  std::vector<std::filesystem::path> files;  ///< that were read, for messages
 };
 
 /// Reads one file of data (docs/identification.md) to what is there already.
@@ -235,9 +237,18 @@ struct ReactionBand {
   double peak = 0;                        ///< largest magnitude of the middle curve
 };
 
+/// What it takes to measure a reaction.
+enum class Measured {
+  on_a_rig,     ///< the drive torque: every test rig has a torque meter
+  at_bearings,  ///< the loads of the shaft's bearings: force sensors in their seats
+  nowhere,      ///< forces between parts that turn: no rig measures them
+};
+Measured measured_as(const std::string& quantity);
+
 /// A measurement that could be made.
 struct Candidate {
   Output output;
+  Measured measured = Measured::nowhere;
   double deviation = 0;  ///< standard uncertainty it is taken to have
   double shrinks = 0;    ///< mean share by which the reactions' bands would become narrower
   std::string most;      ///< the reaction that gains most
@@ -282,8 +293,10 @@ struct Identification {
   std::vector<Profile> profiles;
   Posterior posterior;
   std::vector<double> theta_deg;
-  std::vector<ReactionBand> bands;    ///< of the reactions of piston 1, block, shaft and gear
-  std::vector<Candidate> candidates;  ///< the most useful first
+  std::vector<ReactionBand> bands;  ///< of the reactions of piston 1, block, shaft and gear
+  /// Those that every rig measures first, then the others in the order of `Measured`; of each kind
+  /// the most useful first.
+  std::vector<Candidate> candidates;
   std::vector<LeftOut> left_out;
   /// Where there are any, profiles, posterior and bands hold only if these bounds are right.
   std::vector<HeldUnknown> held;
