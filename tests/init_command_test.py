@@ -56,6 +56,10 @@ class InitTest(ProgramTest):
             with self.subTest(ci=choice):
                 self.run_program("init", choice, "--ci", choice)
                 self.assertEqual(self.made(choice) - {"packages/README.md"}, ALWAYS | files)
+                # The README speaks of what is there.
+                readme = (self.folder / choice / "README.md").read_text()
+                for word in ("CI", "packages/", "BENTAXIS_PACKAGE"):
+                    self.assertEqual(word in readme, bool(files), word)
         self.assert_mentions(self.refused("init", "other", "--ci", "jenkins"), "--ci", "jenkins", "github")
 
     def test_changes_are_written_into_the_case(self):

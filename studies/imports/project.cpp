@@ -19,11 +19,13 @@ std::vector<fs::path> make_project(const Case& the_case, bool changed, const Pro
   // Without curves the file itself will do, with all that people wrote into it.
   project.add("case.toml", changed || !kept.curves.empty() ? kept.text : bytes_of(the_case.file));
   for (const KeptCase::Curve& curve : kept.curves) project.add(curve.name, curve.bytes);
-  project.add("README.md", project_text("README.md"));
+  const bool any_ci = ci.github || ci.gitlab;
+  project.add("README.md", std::string(project_text("README.md")) +
+                               (any_ci ? project_text("readme_ci.md") : ""));
   project.add(".gitignore", project_text("gitignore"));
   if (ci.github) project.add(".github/workflows/bentaxis.yml", project_text("github.yml"));
   if (ci.gitlab) project.add(".gitlab-ci.yml", project_text("gitlab.yml"));
-  if (ci.github || ci.gitlab)
+  if (any_ci)
     project.add(
         "packages/README.md",
         "The Debian package of bentaxis for CI, bentaxis_VERSION_amd64.deb, belongs here.\n");
