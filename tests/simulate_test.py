@@ -11,6 +11,7 @@ import os
 import pathlib
 import random
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -152,6 +153,19 @@ class RestTest(SimulateTest):
                     error = self.run_program(*arguments, "--strict", status=BAD_INPUT).stderr
                     self.assertIn("--strict", error)
 
+    def test_states_that_run_against_their_speed_are_said(self):
+        states = self.folder / "states.csv"
+        for rpm, said in ((1500, ["falls from 20 to 0", "theta_rpm is positive"]), (-1500, None)):
+            states.write_text("theta_deg,psi_deg,theta_rpm,psi_rpm,theta_rad_per_s2,psi_rad_per_s2\n"
+                              + "".join(f"{deg},{deg},{rpm},{rpm},0,0\n" for deg in (20, 10, 0)))
+            done = self.run_program("run", stored("constant_torque") / "case.toml", "--model", "analytic", "--states", states,
+                                    "--out", "out")
+            if said:
+                for words in ("states-against-speed", *said):
+                    self.assertIn(words, done.stderr)
+            else:
+                self.assertNotIn("states-against", done.stderr)
+
     def test_a_torque_over_time_needs_no_torque_beside_it(self):
         (self.folder / "torque.csv").write_text("time_s,torque_Nm\n0,280\n0.1,280\n0.2,280\n0.3,280\n")
         case = self.case("constant_torque", torque_Nm=None, file="torque.csv", duration_s=0.002, samples=2)
@@ -160,6 +174,25 @@ class RestTest(SimulateTest):
         self.simulate(self.case("constant_torque", duration_s=0.002, samples=2), "--model", "analytic")
         for first, second in zip(by_file, self.table("out/simulation_analytic.csv")):
             self.assertAlmostEqual(float(first["shaft_rpm"]), float(second["shaft_rpm"]), 7)
+
+    def test_a_torque_over_time_may_have_other_units_and_names(self):
+        ours = "time_s,torque_Nm\n0,280\n0.1,281\n0.2,280\n0.3,280\n"
+        theirs = {"kilo": "t [ms];M [kNm]\n0;0.28\n100;0.281\n200;0.28\n300;0.28\n",
+                  "order": "Torque (Nm),Time (s)\n280,0\n281,0.1\n280,0.2\n280,0.3\n"}
+        case = self.case("constant_torque", torque_Nm=None, file="torque.csv", duration_s=0.002, samples=2)
+        rows = {}
+        for name, text in {"ours": ours, **theirs}.items():
+            (self.folder / "torque.csv").write_text(text)
+            self.simulate(case, "--model", "analytic")
+            rows[name] = self.table("out/simulation_analytic.csv")
+        for name in theirs:
+            for first, second in zip(rows["ours"], rows[name], strict=True):
+                self.assertAlmostEqual(float(first["shaft_rpm"]), float(second["shaft_rpm"]), 7)
+        for text, words in (("time_s,torque\n" + ours.split("\n", 1)[1], ("torque", "[Nm]")),
+                            ("a,b\n" + ours.split("\n", 1)[1], ("column of time", "[s]", "a, b"))):
+            (self.folder / "torque.csv").write_text(text)
+            shutil.rmtree(self.folder / "out", ignore_errors=True)
+            self.refused(case, "torque.csv", *words)
 
     def test_a_constant_torque_must_be_given(self):
         self.refused(self.case("constant_torque", torque_Nm=None), "torque_Nm is missing")

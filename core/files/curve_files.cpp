@@ -2,7 +2,6 @@
 // errors of teeth, clearances.
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "bentaxis/files/csv.h"
 #include "bentaxis/files/foreign_table.h"
@@ -13,99 +12,115 @@
 #include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/text.h"
+#include "bentaxis/pump/unit_of_measure.h"
 #include "bentaxis/pump/units.h"
 #include "refused_value.h"
 
 namespace bentaxis {
 namespace {
 
-// Column of a foreign table that is an angle or a pressure, with the size of its unit (degrees,
-// Pa); by unit, else by name.
-struct PressureColumn {
-  std::size_t index;
-  double unit;
+// A table of any format with its units, but one with our own heading is held to it line by line.
+ForeignTable table_with_units(const std::filesystem::path& file, const char* what,
+                              const std::vector<std::string>& own_heading,
+                              const std::vector<std::string>& own_units) {
+  const std::string content = read_input_file(file, {what, kLargestTable});
+  const auto heading = std::string_view(content).substr(0, content.find('\n'));
+  if (trimmed(heading) != joined(own_heading, ",")) return table_of(content, file);
+  ForeignTable table;
+  static_cast<NumericTable&>(table) = numeric_csv_of(content, file, false);
+  table.file = file;
+  table.units = own_units;
+  return table;
+}
+
+// A quantity that a file has a column of, in words, with an example of its unit and how its name
+// may begin where it lacks one.
+struct WantedColumn {
+  std::string quantity, words, unit;
+  std::vector<std::string> names;
 };
 
-PressureColumn find_column(const ForeignTable& table, const std::map<std::string, double>& units,
-                           const std::vector<std::string>& names, const std::string& what) {
-  std::vector<PressureColumn> found;
-  for (const bool by_name : {false, true}) {
-    if (!found.empty()) break;
-    for (std::size_t c = 0; c < table.header.size(); ++c) {
-      const std::string unit = known_unit(table.units[c]);
-      const std::string name = lower_case(table.header[c]);
-      if (const auto it = units.find(unit); it != units.end()) {
-        found.push_back({c, it->second});
-      } else if (by_name && std::any_of(names.begin(), names.end(), [&](const auto& word) {
-                   return name.find(word) != std::string::npos;
-                 })) {
-        throw InputError(table.file.string() + ": column \"" + table.header[c] +
-                         "\" has no unit of " + what + ": name one in its heading, as in [" +
-                         units.begin()->first + "]");
-      }
-    }
+// A column with the size of its unit in SI.
+struct QuantityColumn {
+  const ForeignTable& table;
+  std::size_t index;
+  const UnitOfMeasure* unit;
+
+  double at(std::size_t row) const { return table.rows[row][index]; }
+  [[noreturn]] void refuse(std::size_t row, const std::string& range) const {
+    throw InputError(table.place(row) + ": " + table.header[index] + " = " +
+                     (is_computed(at(row)) ? number_text(at(row)) : "\"\"") + ": must be " + range);
   }
+  void require_number(std::size_t row) const {
+    if (!is_computed(at(row))) refuse(row, "a finite number");
+    if (std::abs(at(row)) > kLargestInput)
+      refuse(row, "of a magnitude up to " + number_text(kLargestInput));
+  }
+};
+
+// By unit, else by name.
+QuantityColumn find_column(const ForeignTable& table, const WantedColumn& wanted) {
+  std::vector<QuantityColumn> found;
+  for (std::size_t c = 0; c < table.header.size(); ++c)
+    if (const auto* const unit = find_unit_of_measure(known_unit(table.units[c]));
+        unit != nullptr && unit->quantity == wanted.quantity)
+      found.push_back({table, c, unit});
   if (found.size() == 1) return found.front();
-  throw InputError(table.file.string() + ": must have one column of " + what +
-                   " with its unit; its columns are " + joined(table.header));
+  for (std::size_t c = 0; c < table.header.size() && found.empty(); ++c)
+    for (const std::string& name : wanted.names)
+      if (lower_case(table.header[c]).find(name) != std::string::npos)
+        throw InputError(table.file.string() + ": column \"" + table.header[c] +
+                         "\" has no unit of " + wanted.words +
+                         ": name one in its heading, as in [" + wanted.unit + "]");
+  throw InputError(table.file.string() + ": must have one column of " + wanted.words +
+                   " with its unit, as in [" + wanted.unit + "]; its columns are " +
+                   joined(table.header));
+}
+
+// A curve over angles that fall from row to row is the same curve in rising order.
+template <class AnyTable>
+AnyTable in_rising_order(AnyTable table, std::size_t angle) {
+  const auto rises = [&](const auto& row, const auto& next) { return !(row[angle] > next[angle]); };
+  if (table.rows.size() > 1 &&
+      std::adjacent_find(table.rows.begin(), table.rows.end(), rises) == table.rows.end()) {
+    std::reverse(table.rows.begin(), table.rows.end());
+    std::reverse(table.lines.begin(), table.lines.end());
+  }
+  return table;
 }
 
 }  // namespace
 
 PressureCurve read_pressure_curve(const std::filesystem::path& file) {
-  // A file with our own heading is held to it line by line.
-  ForeignTable table;
-  const std::string content = read_input_file(file, {"a pressure curve", kLargestTable});
-  const auto heading = std::string_view(content).substr(0, content.find('\n'));
-  if (trimmed(heading) == "theta_deg,pressure_bar") {
-    static_cast<NumericTable&>(table) = numeric_csv_of(content, file, false);
-    table.file = file;
-    table.units = {"deg", "bar"};
-  } else {
-    table = table_of(content, file);
-  }
-  const auto angle =
-      find_column(table, {{"deg", 1}, {"rad", 1 / kRadPerDegree}, {"turn", 360}, {"gon", 0.9}},
-                  {"theta", "angle", "phi", "winkel"}, "angle");
-  const auto pressure = find_column(table,
-                                    {{"bar", pascals(1)},
-                                     {"mbar", 1e2},
-                                     {"Pa", 1},
-                                     {"kPa", 1e3},
-                                     {"MPa", 1e6},
-                                     {"psi", 6894.757293168361}},
-                                    {"press", "druck"}, "pressure");
+  static const WantedColumn kAngle = {"Angle", "angle", "deg", {"theta", "angle", "phi", "winkel"}};
+  const ForeignTable given =
+      table_with_units(file, "a pressure curve", {"theta_deg", "pressure_bar"}, {"deg", "bar"});
+  const ForeignTable table = in_rising_order(given, find_column(given, kAngle).index);
+  const auto angle = find_column(table, kAngle);
+  const auto pressure = find_column(table, {"Pressure", "pressure", "bar", {"press", "druck"}});
   PressureCurve curve;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const double theta = table.rows[i][angle.index] * angle.unit;
-    const double value = table.rows[i][pressure.index];
-    const auto refuse = [&](const std::string& range) {
-      throw InputError(table.place(i) + ": " + table.header[angle.index] + " = " +
-                       number_text(table.rows[i][angle.index]) + ": must be " + range);
-    };
-    if (!is_computed(theta) || !is_computed(value))
-      throw InputError(table.place(i) + ": " +
-                       table.header[is_computed(theta) ? pressure.index : angle.index] +
-                       " = \"\": must be a finite number");
+    angle.require_number(i);
+    pressure.require_number(i);
+    const double theta = angle.at(i) * (angle.unit->factor / kRadPerDegree);
     if (i > 0 && !(theta > curve.theta_deg.back()))
-      refuse("> " + number_text(curve.theta_deg.back()) + " deg (angles increase strictly)");
-    const double pascal =
-        known_unit(table.units[pressure.index]) == "bar" ? pascals(value) : value * pressure.unit;
+      angle.refuse(i,
+                   "> " + number_text(curve.theta_deg.back()) + " deg (angles increase strictly)");
+    const double pascal = pressure.unit->name == "bar" ? pascals(pressure.at(i))
+                                                       : pressure.at(i) * pressure.unit->factor;
     if (!kPressureRange.contains(pascal / kPascalPerBar))
-      throw InputError(table.place(i) + ": " + table.header[pressure.index] + " = " +
-                       number_text(value) + ": must be " + kPressureRange.text() + " bar");
+      pressure.refuse(i, kPressureRange.text() + " bar");
     constexpr double kSameAngle = 1e-9;
     if (i > 0 && i + 1 == table.rows.size() &&
         std::abs(theta - curve.theta_deg.front() - 360) < kSameAngle) {
       // The end point may come again.
       if (pascal != curve.pressure.front())
-        throw InputError(table.place(i) + ": " + table.header[pressure.index] + " = " +
-                         number_text(value) +
-                         ": must equal the value at the start of the turn: the curve is periodic");
+        pressure.refuse(i, "equal to the value at the start of the turn: the curve is periodic");
       break;
     }
     if (i > 0 && !(theta - curve.theta_deg.front() < 360))
-      refuse("< " + number_text(curve.theta_deg.front() + 360) + " deg (a turn after the first)");
+      angle.refuse(
+          i, "< " + number_text(curve.theta_deg.front() + 360) + " deg (a turn after the first)");
     curve.theta_deg.push_back(theta);
     curve.pressure.push_back(pascal);
   }
@@ -117,9 +132,12 @@ namespace {
 // A file of numbers under a fixed heading.
 class CurveFile {
  public:
-  /// @param headings  of which it must have one
-  CurveFile(const std::filesystem::path& file, const std::vector<std::string>& headings)
-      : file_(file), table_(read_numeric_csv(file)) {
+  /// @param headings     of which it must have one
+  /// @param over_angles  angles may fall from row to row
+  CurveFile(const std::filesystem::path& file, const std::vector<std::string>& headings,
+            bool over_angles = false)
+      : file_(file),
+        table_(over_angles ? in_rising_order(read_numeric_csv(file), 0) : read_numeric_csv(file)) {
     const auto is_its_own = [&](const std::string& heading) {
       const auto commas = std::count(heading.begin(), heading.end(), ',');
       return table_.header.size() == static_cast<std::size_t>(commas) + 1 &&
@@ -175,7 +193,7 @@ class CurveFile {
 }  // namespace
 
 OpeningTable read_opening_table(const std::filesystem::path& file) {
-  const CurveFile table(file, {"theta_deg,area_mm2"});
+  const CurveFile table(file, {"theta_deg,area_mm2"}, true);
   OpeningTable opening{file, {}, {}};
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const double theta = table.next_angle(i);
@@ -190,7 +208,7 @@ OpeningTable read_opening_table(const std::filesystem::path& file) {
 }
 
 StrokeTable read_stroke_table(const std::filesystem::path& file) {
-  const CurveFile table(file, {"theta_deg,stroke_mm", "theta_deg,volume_cm3"});
+  const CurveFile table(file, {"theta_deg,stroke_mm", "theta_deg,volume_cm3"}, true);
   StrokeTable stroke{file, {}, {}, table.name(1) == "volume_cm3"};
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const double theta = table.next_angle(i), value = table.at(i, 1);
@@ -207,42 +225,61 @@ StrokeTable read_stroke_table(const std::filesystem::path& file) {
 
 namespace {
 
-// Of a value over `first`, times or speeds, as the file has it.
-TimeCurve read_time_curve(const std::filesystem::path& file, const std::string& first,
-                          const std::string& second, bool negative) {
-  const CurveFile table(file, {first + "," + second});
-  const bool in_time = first == "time_s";
-  TimeCurve curve{file, {}, {}};
-  for (std::size_t i = 0; i < table.rows(); ++i) {
-    const double at = table.at(i, 0);
-    if (i == 0 && at > 0 && in_time) table.refuse(i, 0, "<= 0 (a simulation starts at 0)");
-    if (i > 0 && !(at > curve.time.back()))
-      table.refuse(i, 0,
-                   "> " + number_text(curve.time.back()) + ", the one before it (" +
-                       (in_time ? "times" : "speeds") + " increase strictly)");
-    if (!negative && !(table.at(i, 1) >= 0)) table.refuse(i, 1, ">= 0");
-    curve.time.push_back(at);
-    curve.value.push_back(table.at(i, 1));
+const WantedColumn kTimeColumn = {"Time", "time", "s", {"time", "zeit"}};
+const WantedColumn kSpeedColumn = {"AngularVelocity", "speed", "rpm", {"speed", "drehzahl"}};
+const WantedColumn kTorqueColumn = {"Torque", "torque", "Nm", {"torque", "moment"}};
+
+// Of a value over times or speeds, in SI.
+TimeCurve time_curve_of(const QuantityColumn& first, const QuantityColumn& second, bool negative) {
+  const ForeignTable& table = first.table;
+  const bool in_time = first.unit->quantity == kTimeColumn.quantity;
+  TimeCurve curve{table.file, {}, {}};
+  const auto in_si = [](const QuantityColumn& column, std::size_t row) {
+    return column.unit->name == "rpm" ? rad_per_second(column.at(row))
+                                      : column.at(row) * column.unit->factor;
+  };
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    first.require_number(i);
+    second.require_number(i);
+    if (i == 0 && first.at(i) > 0 && in_time) first.refuse(i, "<= 0 (a simulation starts at 0)");
+    if (i > 0 && !(first.at(i) > first.at(i - 1)))
+      first.refuse(i, "> " + number_text(first.at(i - 1)) + ", the one before it (" +
+                          (in_time ? "times" : "speeds") + " increase strictly)");
+    if (!negative && !(second.at(i) >= 0)) second.refuse(i, ">= 0");
+    curve.time.push_back(in_si(first, i));
+    curve.value.push_back(in_si(second, i));
   }
-  if (table.rows() < 4)
-    table.refuse("points: " + std::to_string(table.rows()) + ", must be at least 4");
+  constexpr std::size_t kFewestPoints = 4;
+  if (curve.time.size() < kFewestPoints)
+    throw InputError(table.file.string() + ": points: " + std::to_string(curve.time.size()) +
+                     ", must be at least 4");
   return curve;
 }
 
 }  // namespace
 
 TimeCurve read_drive_curve(const std::filesystem::path& file, DriveKind kind) {
-  const bool motor = kind == DriveKind::motor;
-  const bool speed = kind == DriveKind::speed;
-  TimeCurve curve = read_time_curve(file, motor ? "speed_rpm" : "time_s",
-                                    speed ? "speed_rpm" : "torque_Nm", true);
-  for (double& value : motor ? curve.time : curve.value)
-    if (motor || speed) value = rad_per_second(value);
-  return curve;
+  const WantedColumn& first = kind == DriveKind::motor ? kSpeedColumn : kTimeColumn;
+  const WantedColumn& second = kind == DriveKind::speed ? kSpeedColumn : kTorqueColumn;
+  const auto own_name = [](const WantedColumn& column) { return column.words + "_" + column.unit; };
+  const ForeignTable table = table_with_units(file, "a drive", {own_name(first), own_name(second)},
+                                              {first.unit, second.unit});
+  return time_curve_of(find_column(table, first), find_column(table, second), true);
 }
 
 TimeCurve read_share_curve(const std::filesystem::path& file) {
-  return read_time_curve(file, "time_s", "share", false);
+  static const UnitOfMeasure kNone{.name = "", .quantity = "Share"};
+  const ForeignTable table = table_with_units(file, "a load", {"time_s", "share"}, {"s", ""});
+  const auto share = std::find_if(table.header.begin(), table.header.end(),
+                                  [](const auto& name) { return lower_case(name) == "share"; });
+  if (share == table.header.end())
+    throw InputError(file.string() +
+                     ": header must be time_s,share; the time may have another unit; its columns "
+                     "are " +
+                     joined(table.header));
+  return time_curve_of(find_column(table, kTimeColumn),
+                       {table, static_cast<std::size_t>(share - table.header.begin()), &kNone},
+                       false);
 }
 
 void read_tooth_errors(const std::filesystem::path& file, ToothData& teeth) {

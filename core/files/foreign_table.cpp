@@ -373,8 +373,8 @@ std::string ForeignTable::place(std::size_t row) const {
 
 std::string known_unit(const std::string& text) {
   // What columns of other programs hold.
-  static const std::set<std::string> quantities = {"Force",    "Torque", "Length",
-                                                   "Pressure", "Angle",  "Time"};
+  static const std::set<std::string> quantities = {"Force", "Torque", "Length",         "Pressure",
+                                                   "Angle", "Time",   "AngularVelocity"};
   std::string bare;
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text.compare(i, 2, "·") == 0) {  // in two bytes

@@ -32,6 +32,23 @@ void add(std::vector<Warning>& warnings, const States& states, const std::string
       {name, count == 1 ? first : fmt::format("{}; {} states in all", first, count)});
 }
 
+// Rows without times whose angle goes one way from the first to the last while all speeds point the
+// other way: the file is in reverse order, or the sign of a speed is wrong.
+std::string against_its_speed(const States& states) {
+  if (!states.time.empty() || states.rows() < 3) return "";
+  const double way = states.motion.back().theta_deg - states.motion.front().theta_deg;
+  for (std::size_t row = 0; row < states.rows(); ++row) {
+    if (!(states.motion[row].shaft_speed * way < 0)) return "";
+    if (row > 0 && !((states.motion[row].theta_deg - states.motion[row - 1].theta_deg) * way > 0))
+      return "";
+  }
+  return fmt::format(
+      "theta_deg {} from {:g} to {:g} over the rows, but theta_rpm is {} in all of them: the rows "
+      "are in reverse order, or the speed has the wrong sign. Each state is computed as it stands",
+      way > 0 ? "rises" : "falls", states.motion.front().theta_deg, states.motion.back().theta_deg,
+      way > 0 ? "negative" : "positive");
+}
+
 }  // namespace
 
 std::vector<Warning> state_doubts(const Case& the_case, const States& states) {
@@ -52,6 +69,8 @@ std::vector<Warning> state_doubts(const Case& the_case, const States& states) {
     if (std::abs(lag) <= kTeethApartDeg) return "";
     return fmt::format("theta - psi = {:.4g} deg: gear teeth cannot be that far out of phase", lag);
   });
+  if (const std::string against = against_its_speed(states); !against.empty())
+    warnings.push_back({"states-against-speed", against});
   if (!states.time.empty())
     add(warnings, states, "states-against-time", [&](std::size_t row) -> std::string {
       if (row == 0) return "";

@@ -39,7 +39,9 @@ Table drive_table() {
                 curve_at(PLACE(c.drive->curve.file), {.drive = [](Case& c) { return &*c.drive; }}),
                 "CSV `time_s,speed_rpm` or `time_s,torque_Nm`, path relative to the case file: the "
                 "speed or the torque over time instead. At least 4 points, the first at a time "
-                "<= 0. Of a motor `speed_rpm,torque_Nm`: its torque over its speed. Empty: none"),
+                "<= 0. Of a motor `speed_rpm,torque_Nm`: its torque over its speed. Other names, "
+                "units (`time [ms]`, `torque [kNm]`) and formats as in docs/import.md. Empty: "
+                "none"),
            number(
                "torque_Nm", "T0", FIELD(c.drive->torque), {"Nm"}, kAny,
                {.computed = [](const Case& c) -> std::optional<Value> {

@@ -51,12 +51,12 @@ OpeningTable read_opening_table(const std::filesystem::path& file);
 /// @throws InputError naming file and line.
 StrokeTable read_stroke_table(const std::filesystem::path& file);
 
-/// Reads what drives a shaft over time: CSV with the header time_s,speed_rpm or, for a torque,
-/// time_s,torque_Nm.
+/// Reads what drives a shaft: a table (foreign_table.h) with one column each of time and speed or
+/// torque, of a motor of speed and torque, with their units: time_s,torque_Nm or time [ms],M [kNm].
 /// @throws InputError naming file and line.
 TimeCurve read_drive_curve(const std::filesystem::path& file, DriveKind kind);
 
-/// Reads the share of a load over time: CSV with the header time_s,share; shares >= 0.
+/// Reads the share of a load over time: a table with a column of time and share; shares >= 0.
 /// @throws InputError naming file and line.
 TimeCurve read_share_curve(const std::filesystem::path& file);
 
