@@ -158,8 +158,8 @@ class RestTest(SimulateTest):
         for rpm, said in ((1500, ["falls from 20 to 0", "theta_rpm is positive"]), (-1500, None)):
             states.write_text("theta_deg,psi_deg,theta_rpm,psi_rpm,theta_rad_per_s2,psi_rad_per_s2\n"
                               + "".join(f"{deg},{deg},{rpm},{rpm},0,0\n" for deg in (20, 10, 0)))
-            done = self.run_program("run", stored("constant_torque") / "case.toml", "--model", "analytic", "--states", states,
-                                    "--out", "out")
+            done = subprocess.run([base.PROGRAM, "run", stored("constant_torque") / "case.toml", "--model", "analytic", "--states", states,
+                                   "--out", "out"], cwd=self.folder, capture_output=True, text=True, check=True)
             if said:
                 for words in ("states-against-speed", *said):
                     self.assertIn(words, done.stderr)

@@ -264,7 +264,8 @@ TimeCurve read_drive_curve(const std::filesystem::path& file, DriveKind kind) {
   const auto own_name = [](const WantedColumn& column) { return column.words + "_" + column.unit; };
   const ForeignTable table = table_with_units(file, "a drive", {own_name(first), own_name(second)},
                                               {first.unit, second.unit});
-  return time_curve_of(find_column(table, first), find_column(table, second), true);
+  const QuantityColumn at = find_column(table, first);
+  return time_curve_of(at, find_column(table, second), true);
 }
 
 TimeCurve read_share_curve(const std::filesystem::path& file) {

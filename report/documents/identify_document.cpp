@@ -366,8 +366,8 @@ std::string headline_of(const DataModel& model, const Identification& result) {
   const auto unknowns = static_cast<int>(model.size());
   if (result.held.empty() && open == unknowns)
     text = fmt::format(
-        "the data determine none of the {} unknowns: no direction becomes less than half as wide "
-        "as the bounds, and the identified values are those of the case; {}",
+        "the data determine none of the unknowns: none of {} directions becomes less than half as "
+        "wide as the bounds, and the identified values follow from the case and the bounds; {}",
         unknowns, text);
   else if (result.held.empty())
     text += fmt::format("; {} of {} directions become less than half as wide as the bounds",

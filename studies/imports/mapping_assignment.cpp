@@ -233,7 +233,9 @@ class VectorAssigner {
       if (a.score < best.score + std::log(kFault) / 2)
         for (const std::size_t g : faults_of(a)) add_once(rivals, g);
     }
-    return rivals == faults ? std::vector<std::size_t>{} : rivals;
+    if (rivals == faults) return {};
+    sort_once(rivals);
+    return rivals;
   }
 
   static double size_of(const Products& p) {
