@@ -143,7 +143,7 @@ void give_to(Case& the_case, const SteadyState& state) {
 
 namespace {
 
-Line load_line(const Summary& s) {
+Line line_of_load(const Summary& s) {
   switch (s.load) {
     case LoadKind::laminar:
       return {"load, laminar conductance", s.load_size * kPascalPerBar / kLitrePerMinute,
@@ -159,6 +159,16 @@ Line load_line(const Summary& s) {
       break;
   }
   return {"load orifice", s.load_size * 1e6, "mm2", "load_mm2"};
+}
+
+Line load_line(const Summary& s) {
+  Line line = line_of_load(s);
+  const bool has_size = s.load != LoadKind::constant_pressure && s.load != LoadKind::flow;
+  if (has_size && !(s.load_size > 0)) {
+    line.name = "load: none, the line is open";
+    line.value = not_computed();
+  }
+  return line;
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ Table pressure_table() {
                      if (c.pressure.kind != PressureKind::hydraulic) return std::nullopt;
                      return NumberRange{0, 10000};
                    },
-                   .range_words = "hydraulic: [0, 10000]",
+                   .range_words = "[-1e+09, 1e+09]; hydraulic: [0, 10000]",
                    .differentiable = always}),
            number("points", "", FIELD(c.pressure.points), kNoUnit, {0, 100000}, {0},
                   "0: both models use the computed curve, within `curve_error`; otherwise a "
