@@ -137,6 +137,24 @@ class UncertaintyTest(ProgramTest):
         self.assertEqual(self.files(), FILES - {"bands.csv"})
         self.assertNotEqual(*((self.folder / out / "outputs.csv").read_bytes() for out in ("out", "out1")))
 
+    def test_few_samples_have_no_quantiles(self):
+        case = self.uncertain()
+        for samples, level, given, words in ((20, 0.95, False, ("known to about 16 % (to 10 % from 51 on)", "need 146 (--samples)")),
+                                             (100, 0.95, False, ("need 146 (--samples)",)), (20, 0.5, True, ("known to about 16 %",))):
+            with self.subTest(samples=samples, level=level):
+                result = self.run_program("uncertainty", case, "--samples", samples, "--level", level, "--out", "out")
+                self.assert_mentions(result.out, f"{samples} samples are too few for reliable statistics: ", *words)
+                self.assertEqual("of the pumps in" in result.out, given)
+                self.assertEqual("bands.csv" in self.files(), given)
+                [warning] = self.report()["warnings"]
+                self.assertEqual(warning["name"], "Few samples")
+                for row in self.table("outputs.csv"):
+                    self.assertTrue(row["mean"] and row["deviation"] and row["median"])
+                    self.assertEqual([bool(row[key]) for key in ("low", "low_from", "high", "high_to")], [given] * 4)
+        result = self.run_program("uncertainty", case, "--samples", 146, "--no-curves", "--out", "out")
+        self.assertNotIn("too few", result.out)
+        self.assertFalse(self.report().get("warnings"))
+
     def test_samples_that_are_no_pump(self):
         case = self.uncertain("")
         result = self.run_program("uncertainty", case, "--vary", "port_plate.delivery_arc_deg.2=normal(189.5, 0.5)",
@@ -203,7 +221,7 @@ class UncertaintyTest(ProgramTest):
         case = self.uncertain()
         for arguments, words in (
             ((plain,), ["needs [uncertainty]"]),
-            ((case, "--samples", 100), ["100 samples", "at least 146"]),
+            ((case, "--samples", 9), ["--samples", "9", "10"]),
             ((case, "--output", "most:Td"), ["most:Td"]),
             ((case, "--vary", "pump.tilt_deg"), ["--vary pump.tilt_deg", "NAME=DISTRIBUTION"]),
             ((case, "--vary", "pump.tilt=normal(1)"), ["pump.tilt", "pump.tilt_deg"]),

@@ -14,12 +14,15 @@ using report::Section;
 
 std::string percent(double share) { return fmt::format("{:g} %", 100 * share); }
 
-// "292.51 Nm, 95 % in 290.1 .. 294.9"
+// "292.51 Nm: 95 % of the pumps in 290.1 .. 294.9, standard uncertainty 2.9"; of too few samples
+// without quantiles.
 std::string in_words(const UncertainOutput& o, double level) {
   const Spread& s = o.spread;
   return fmt::format(
-      "{} = {:.6g} {}: {} of the pumps in {:.6g} .. {:.6g}, standard uncertainty {:.3g}",
-      o.output.name, o.nominal, o.output.unit, percent(level), s.low.value, s.high.value,
+      "{} = {:.6g} {}: {}standard uncertainty {:.3g}", o.output.name, o.nominal, o.output.unit,
+      is_computed(s.low.value) ? fmt::format("{} of the pumps in {:.6g} .. {:.6g}, ",
+                                             percent(level), s.low.value, s.high.value)
+                               : "",
       s.deviation);
 }
 
@@ -37,6 +40,7 @@ std::string headline(const UncertaintyResult& result) {
                          ? std::string("bands on reactions")
                          : in_words(result.outputs.front(), result.options.level);
   if (!result.sampled.infeasible.empty()) text += "; " + left_out_text(result);
+  if (const std::string few = result.too_few_text(); !few.empty()) text += "; " + few;
   return text;
 }
 
@@ -110,6 +114,7 @@ std::string with_error(double value, double error) {
   return digits(value, error) + fmt::format(" +- {:g}", rounded(error, 2));
 }
 std::string with_interval(const Estimate& e) {
+  if (!is_computed(e.value)) return "too few samples";
   const double width = e.high - e.low;
   return digits(e.value, width) + " (" + digits(e.low, width) + " .. " + digits(e.high, width) +
          ")";
@@ -375,6 +380,8 @@ report::Document uncertainty_document(const UncertaintyResult& result, const rep
     document.runs->push_back(bands_section(result));
     append(document.figures, band_figures(result));
   }
+  if (const std::string few = result.too_few_text(); !few.empty())
+    report::append(document.warnings, report::Warning{"Few samples", few + "."});
   add_left_out(document, result);
   return document;
 }
@@ -401,6 +408,7 @@ std::string uncertainty_text(const UncertaintyResult& result) {
   if (const CurveBand* widest = report::largest_of(result.bands, of_peak))
     text += fmt::format("widest band: {}, +-{:.3g} {}, {} of peak\n", widest->channel.name,
                         widest->widest, widest->channel.unit, percent_text(of_peak(*widest)));
+  if (const std::string few = result.too_few_text(); !few.empty()) text += few + "\n";
   if (!result.sampled.infeasible.empty())
     text += left_out_text(result) +
             "; the first reason: " + result.sampled.infeasible.front().second + "\n";

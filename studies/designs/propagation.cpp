@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "bentaxis/designs/points.h"
+#include "bentaxis/pump/counted.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/lists.h"
 #include "bentaxis/pump/number.h"
@@ -48,12 +49,12 @@ Estimate QuantileRule::operator()(const std::vector<double>& sorted) const {
 
 std::size_t fewest_samples(double level) { return QuantileRule::fewest((1 - level) / 2); }
 
+double deviation_known_to(std::size_t samples) {
+  return 1 / std::sqrt(2 * static_cast<double>(samples - 1));
+}
+
 Spread spread_of(std::vector<double> values, double level) {
   const std::size_t samples = values.size();
-  if (samples < fewest_samples(level))
-    throw InputError("--samples: " + std::to_string(samples) + " with outputs: must be at least " +
-                     std::to_string(fewest_samples(level)) + " for the quantiles of a level of " +
-                     number_text(level));
   std::sort(values.begin(), values.end());
   Spread s;
   const auto count = static_cast<double>(samples);
@@ -72,9 +73,13 @@ Spread spread_of(std::vector<double> values, double level) {
     s.deviation_error =
         std::sqrt(std::max(0.0, fourth - second * second) / count) / (2 * s.deviation);
   const double tail = (1 - level) / 2;
-  s.low = QuantileRule(tail, samples)(values);
-  s.median = QuantileRule(0.5, samples)(values);
-  s.high = QuantileRule(1 - tail, samples)(values);
+  const auto quantile = [&](double share) {
+    if (samples >= QuantileRule::fewest(share)) return QuantileRule(share, samples)(values);
+    return Estimate{not_computed(), not_computed(), not_computed()};
+  };
+  s.low = quantile(tail);
+  s.median = quantile(0.5);
+  s.high = quantile(1 - tail);
   return s;
 }
 
@@ -101,7 +106,7 @@ Evaluated evaluate(const Response& response, std::size_t outputs, std::size_t di
   const auto number = static_cast<double>(count);
   study::require_memory(
       number * (2 * static_cast<double>(outputs * sizeof(double)) + sizeof(std::string)),
-      fmt::format("--samples: {} designs of {} numbers each", count, outputs),
+      fmt::format("--samples: {} of {} each", counted(count, "design"), counted(outputs, "number")),
       "lower --samples, or ask for fewer outputs");
   Evaluated all{std::vector<double>(count * outputs), std::vector<std::string>(count)};
   const std::size_t points = points_of_block(count), blocks = (count + points - 1) / points;

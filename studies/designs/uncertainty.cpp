@@ -1,5 +1,7 @@
 #include "bentaxis/designs/uncertainty.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -7,6 +9,7 @@
 
 #include "bentaxis/designs/points.h"
 #include "bentaxis/files/csv_rows.h"
+#include "bentaxis/pump/counted.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/stopwatch.h"
@@ -149,10 +152,12 @@ SampledOutputs without_curves(const SampledOutputs& sampled, std::size_t outputs
   return few;
 }
 
-// Refuses what leaves too little to speak of.
+// Refuses what leaves too little to speak of, or fewer samples than the quantiles need that were
+// asked for.
 void check(const SampledOutputs& sampled, const UncertaintyOptions& options) {
-  const std::size_t without = sampled.infeasible.size();
-  if (2 * without > options.samples || options.samples - without < fewest_samples(options.level))
+  const std::size_t without = sampled.infeasible.size(), fewest = fewest_samples(options.level);
+  if (2 * without > options.samples ||
+      options.samples - without < (options.samples < fewest ? kFewestSamples : fewest))
     throw ComputationError(
         std::to_string(without) + " of " + std::to_string(options.samples) +
         " samples are infeasible pumps; the first: " + sampled.infeasible.front().second);
@@ -177,10 +182,31 @@ void check_sampling(const Case& the_case, std::size_t samples, double level) {
   uncertain_variables(the_case);
 }
 
-UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& options,
+std::string UncertaintyResult::too_few_text() const {
+  constexpr std::size_t kDeviationKnown = 51;  // to 10 %
+  const std::size_t fewest = fewest_samples(options.level);
+  if (kept() >= std::max(fewest, kDeviationKnown)) return "";
+  std::string text =
+      fmt::format("{} are too few for reliable statistics: ", counted(kept(), "sample"));
+  if (kept() < kDeviationKnown)
+    text += fmt::format("a standard deviation is known to about {:.0f} % (to 10 % from {} on)",
+                        100 * deviation_known_to(kept()), kDeviationKnown);
+  if (kept() < fewest)
+    text += fmt::format(
+        "{}the quantiles and bands that hold {:g} % of the pumps need {} (--samples) "
+        "and are not given",
+        kept() < kDeviationKnown ? "; " : "", 100 * options.level, fewest);
+  return text;
+}
+
+UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& asked,
                               const study::PartProgress& progress_of) {
   const Stopwatch stopwatch;
-  check_sampling(the_case, options.samples, options.level);
+  if (asked.samples < kFewestSamples)
+    throw InputError("--samples " + std::to_string(asked.samples) + ": must be at least " +
+                     std::to_string(kFewestSamples));
+  UncertaintyOptions options = asked;
+  if (options.samples < fewest_samples(options.level)) options.curves = false;
   UncertaintyResult result;
   result.the_case = the_case;
   result.options = options;

@@ -47,14 +47,21 @@ class QuantileRule {
 struct Spread {
   double mean = 0, mean_error = 0;            ///< and its standard error
   double deviation = 0, deviation_error = 0;  ///< standard deviation, its standard error
-  Estimate low, median, high;                 ///< quantiles (1 - level) / 2, 1/2, (1 + level) / 2
+  /// Quantiles (1 - level) / 2, 1/2, (1 + level) / 2. not_computed() where the values are too few:
+  /// no order statistics enclose the quantile.
+  Estimate low, median, high;
 };
-/// @param level  in (0, 1): the part of the values between low and high
-/// @throws InputError where the values are too few for that, naming --samples
+/// @param values  two at least
+/// @param level   in (0, 1): the part of the values between low and high
 Spread spread_of(std::vector<double> values, double level);
 
-/// Fewest samples for a level.
+/// Fewest samples for the quantiles of a level.
 std::size_t fewest_samples(double level);
+/// Fewest samples for statistics at all.
+inline constexpr std::size_t kFewestSamples = 10;
+/// Standard error of a standard deviation, as a share of it, by so many samples of a normal law
+/// (JCGM 100:2008, E.4.3).
+double deviation_known_to(std::size_t samples);
 
 /// Outputs at random points: every point by its number alone.
 struct SampledOutputs {

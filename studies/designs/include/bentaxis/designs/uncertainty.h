@@ -62,20 +62,24 @@ struct UncertaintyResult {
   SobolIndices sobol;             ///< likewise
   std::vector<double> theta_deg;  ///< of the bands: all or some of the case's
   std::size_t angles = 0;         ///< of the case
-  std::vector<CurveBand> bands;
-  std::vector<Spread> further;  ///< of the further numbers
-  SampledOutputs sampled;       ///< outputs of all samples, without curves
+  std::vector<CurveBand> bands;   ///< none by too few samples for the quantiles of the level
+  std::vector<Spread> further;    ///< of the further numbers
+  SampledOutputs sampled;         ///< outputs of all samples, without curves
   /// Where samples were left out: the parameters among those that were not, in their order. Mean
   /// and deviation show how far these are from the stated distributions.
   std::vector<Spread> kept_parameters;
   double seconds = 0;
+
+  std::size_t kept() const { return options.samples - sampled.infeasible.size(); }
+  /// What so few samples do not tell, and how many would; "" where they are enough.
+  std::string too_few_text() const;
 };
 
 /// The reactions of a case of which there is one curve each, of piston 1 where each piston has one:
 /// the others' bands are the same, shifted.
 std::vector<std::size_t> banded_channels(const Case& the_case);
 
-/// Refuses what uncertainty() would refuse, before anything is computed. @throws InputError
+/// Refuses what has no bands, before anything is computed. @throws InputError
 void check_sampling(const Case& the_case, std::size_t samples, double level = 0.95);
 
 /// @throws InputError where the case has no [uncertainty], samples are too few, or an output is not
