@@ -98,6 +98,28 @@ class InertiaTest(WithFolder):
                    "axial_inertia_kg_mm2 = 0.0\n"
         self.study("--speeds", "1500", piston=massless)
 
+    def test_what_is_left_of_loads_that_cancel_is_no_effect_of_inertia(self):
+        """At one pressure on all pistons and without drag the teeth carry 4e-6 N, of which inertia makes 7e-7 N."""
+        case = piston_case(self.folder, 'inertia = "lumped"\nmass_kg = 0.09\n' + REAL)
+        alike = [word for change in ("pressure.suction_bar=275", "pressure.delivery_bar=275", "friction.block_viscous_Nm_per_rpm=0",
+                                     "friction.piston_coulomb_N=0") for word in ("--set", change)]
+        done = self.run_program("inertia", case, "--speeds", 1500, "--map-size", 2, "--out", "out", *alike)
+        headline = json.loads((self.folder / "out/inertia.json").read_text())["verdict"]["headline"]
+        self.assertNotIn("Rcs", headline)
+        self.assertRegex(done.stdout, r"\nRcs +1500  loaded +\S+e-07   none: loads that cancel\n")
+        self.assertRegex(done.stdout, r"\nRs +1500  loaded +\S+   [0-9.]+\n")
+        [row] = [row for row in self.table("out/inertia_errors.csv") if row["reaction"] == "Rcs" and row["load"] == "loaded"]
+        self.assertEqual(float(row["error_over_peak_loaded"]), 0)
+        # With drag they carry a load, of which it is a share.
+        done = self.run_program("inertia", case, "--speeds", 1500, "--map-size", 2, "--out", "out")
+        self.assertRegex(done.stdout, r"\nRcs +1500  loaded +\S+e-07   \S+e-\d+\n")
+
+    def test_a_massless_piston_with_inertia_is_refused(self):
+        case = piston_case(self.folder, 'inertia = "lumped"\nmass_kg = 0.0\n' + REAL)
+        line = self.run_program("inertia", case, "--out", "new", status=BAD_INPUT).stderr.splitlines()[-1]
+        self.assertIn("case.toml: [piston] transverse_inertia_kg_mm2 = 24: must be 0 where mass_kg = 0", line)
+        self.assertFalse((self.folder / "new").exists())
+
     def test_refusals(self):
         case = piston_case(self.folder, 'inertia = "lumped"\nmass_kg = 0.09\n')
         for arguments, words in [

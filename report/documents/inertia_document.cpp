@@ -17,6 +17,8 @@ using Names = std::vector<std::string>;
 const Names kRs = {"Rs_1_x2_N", "Rs_1_y2_N", "Rs_1_z2_N"};
 const Names kRc = {"Rc_1_x2_N", "Rc_1_y2_N"};
 
+constexpr const char* kCancels = "none: loads that cancel";
+
 std::string rpm(double speed) { return fmt::format("{:g} rpm", speed); }
 std::string load_name(bool loaded) { return loaded ? "loaded" : "no load"; }
 
@@ -206,7 +208,8 @@ report::Section error_section(const char* title, const char* text,
     if (contains(groups, error.group))
       section.row(fmt::format("{} ({})", error.group, error.unit), error.speed_rpm,
                   load_name(error.loaded), error.analytic, error.multibody, error.peak,
-                  error.loaded_peak, 100 * error.fraction());
+                  error.loaded_peak,
+                  error.cancels() ? Cell(kCancels) : Cell(100 * error.fraction()));
   return section;
 }
 
@@ -458,8 +461,9 @@ std::string inertia_text(const InertiaStudy& s) {
   std::string text = report::answers_text(s.the_case.name, headline(s), answers_of(s));
   text += "error of lumping    speed rpm  load      N or Nm   % of loaded peak\n";
   for (const auto& error : errors_of(s.full))
-    text += fmt::format("{:<20}{:>9g}  {:<8} {:>9.4g}   {:.3g}\n", error.group, error.speed_rpm,
-                        load_name(error.loaded), error.analytic, 100 * error.fraction());
+    text += fmt::format("{:<20}{:>9g}  {:<8} {:>9.4g}   {}\n", error.group, error.speed_rpm,
+                        load_name(error.loaded), error.analytic,
+                        error.cancels() ? kCancels : fmt::format("{:.3g}", 100 * error.fraction()));
   for (const PistonInertia inertia : s.full.front().by_inverse_dynamics)
     text += to_string(inertia) +
             " pistons have no inertia about A: their multibody reactions are by inverse dynamics\n";

@@ -11,6 +11,7 @@
 #include "bentaxis/numerics/minimum.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/registry.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/piece_progress.h"
 
@@ -31,6 +32,14 @@ void require_real_piston(const Case& the_case) {
   if (const std::string why = piston_inertia_refusal(PistonInertia::real, the_case.pump);
       !why.empty())
     throw InputError(the_case.file.string() + ": the inertia study " + why);
+  const PistonMass& piston = the_case.pump.piston;
+  if (piston.mass == 0 && piston.real->transverse_inertia > 0)  // axial <= 2 transverse
+    throw InputError(
+        the_case.file.string() + ": [piston] transverse_inertia_kg_mm2 = " +
+        to_text(*value_of(parameter_of(standard_registry(), "piston", "transverse_inertia_kg_mm2"),
+                          the_case)) +
+        ": must be 0 where mass_kg = 0, in an inertia study: Simbody has no body with "
+        "inertia but without mass");
 }
 
 Samples turn_of(const Case& the_case) {
@@ -110,6 +119,7 @@ InertiaRun run_both_pistons(const Case& the_case, double speed_rpm, bool loaded,
   InertiaRun run;
   run.speed_rpm = speed_rpm;
   run.loaded = loaded;
+  run.joint_circle_radius = at.pump.geometry.joint_circle_radius;
   const auto multibody_run = [&](PistonInertia inertia, std::size_t number) {
     // Inverse dynamics needs no equation of motion; for what has one it would hide a failure.
     const bool by_multipliers = multibody::has_equation_of_motion(at.pump, inertia);
@@ -154,6 +164,7 @@ compare::Difference largest_difference(const ResultTable& first, const ResultTab
 std::vector<LumpingError> lumping_errors(const InertiaRun& run, const InertiaRun& loaded) {
   const ResultTable analytic = difference(run.analytic_lumped, run.analytic_real, "");
   const ResultTable multibody = difference(run.multibody_lumped, run.multibody_real, "");
+  const double force = loaded.analytic_real.peak("Rs");
   std::vector<LumpingError> errors;
   for (const Channel& channel : run.analytic_real.channels) {
     if (channel.kind != ChannelKind::reaction) continue;
@@ -164,7 +175,8 @@ std::vector<LumpingError> lumping_errors(const InertiaRun& run, const InertiaRun
     errors.push_back(
         {channel.group, channel.unit, run.speed_rpm, run.loaded, analytic.peak(channel.group),
          is_computed(multibody.at(0, column)) ? multibody.peak(channel.group) : not_computed(),
-         run.analytic_real.peak(channel.group), loaded.analytic_real.peak(channel.group)});
+         run.analytic_real.peak(channel.group), loaded.analytic_real.peak(channel.group),
+         channel.unit == "Nm" ? force * run.joint_circle_radius : force});
   }
   return errors;
 }

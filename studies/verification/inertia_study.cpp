@@ -30,18 +30,6 @@ std::vector<double> ratios(const std::pair<double, double>& range, int count) {
   return values;
 }
 
-// One piston stands for all, and its spin is integrated by Simbody.
-void require_even_transfer(const Case& the_case) {
-  if (the_case.pump.transfer.is_even()) return;
-  std::vector<std::string> even;
-  for (const TransferTraits& transfer : kTransfers)
-    if (transfer.even) even.push_back('"' + std::string(transfer.name) + '"');
-  throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") +
-                   "[transfer] kind = \"" + to_string(the_case.pump.transfer.kind) +
-                   "\": must be one of " + joined(even) +
-                   " in an inertia study: the block has to turn exactly as the shaft does");
-}
-
 void compare_models_and_scenes(InertiaStudy& s) {
   const double radius = s.the_case.pump.geometry.joint_circle_radius;
   const double of_teeth = tooth_round_off(s.the_case.pump) / kInertiaModelsAgree;
@@ -78,6 +66,17 @@ void compare_models_and_scenes(InertiaStudy& s) {
 
 }  // namespace
 
+void require_even_transfer(const Case& the_case, const std::string& study) {
+  if (the_case.pump.transfer.is_even()) return;
+  std::vector<std::string> even;
+  for (const TransferTraits& transfer : kTransfers)
+    if (transfer.even) even.push_back('"' + std::string(transfer.name) + '"');
+  throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") +
+                   "[transfer] kind = \"" + to_string(the_case.pump.transfer.kind) +
+                   "\": must be one of " + joined(even) + " in " + study +
+                   ": the block has to turn exactly as the shaft does");
+}
+
 const InertiaRun& InertiaStudy::loaded(const std::vector<InertiaRun>& runs, double speed_rpm) {
   return *std::find_if(runs.begin(), runs.end(), [&](const InertiaRun& run) {
     return run.loaded && run.speed_rpm == speed_rpm;
@@ -97,7 +96,8 @@ bool InertiaStudy::agrees() const {
 
 InertiaStudy run_inertia_study(const Case& as_read, const InertiaOptions& options,
                                const PartProgress& progress_of) {
-  require_even_transfer(as_read);
+  // One piston stands for all, and its spin is integrated by Simbody.
+  require_even_transfer(as_read, "an inertia study");
   // Of each speed both pistons by both models in two scenes, and what is made of the fastest.
   require_memory(as_read, Kept::lumped, Way::driven, options.speeds.size() + 1);
   InertiaStudy s;

@@ -2,6 +2,7 @@
 // appendix, Fig. 36 and 37): for a case's own piston, speed and load, by both models.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -29,11 +30,16 @@ struct InertiaRun {
   /// Pistons whose multibody table is by inverse dynamics, because they have no inertia about A and
   /// so no equation of motion; all others are by constraint multipliers.
   std::vector<PistonInertia> by_inverse_dynamics;
+  double joint_circle_radius = 0;  ///< m
 };
 /// @throws InputError where the case has no data of the real piston or the speed is 0
 /// @throws ComputationError where a model refuses the case
 InertiaRun run_both_pistons(const Case& the_case, double speed_rpm, bool loaded,
                             multibody::Scene scene, const Progress& progress = {});
+
+/// Share of the loads below which a reaction is a remainder of loads that cancel: less than what
+/// radii and angles of a drawing are known to by orders.
+inline constexpr double kRemainder = 1e-6;
 
 /// What lumping changes in one reaction: largest magnitude of the vector lumped - real over turn
 /// and pistons, in the reaction's unit.
@@ -44,8 +50,12 @@ struct LumpingError {
   double analytic = 0, multibody = 0;
   double peak = 0;         ///< of the real piston's reaction in this run
   double loaded_peak = 0;  ///< of the real piston's loaded reaction at this speed
+  double loads = 0;        ///< in the same unit: the largest force of a piston, or its moment at Ra
 
-  double fraction() const { return loaded_peak > 0 ? analytic / loaded_peak : 0; }
+  /// The loads of the pistons cancel in this reaction: it and the error are what is left of them,
+  /// below kRemainder, and no effect of inertia that matters.
+  bool cancels() const { return std::max(analytic, loaded_peak) <= kRemainder * loads; }
+  double fraction() const { return loaded_peak > 0 && !cancels() ? analytic / loaded_peak : 0; }
 };
 /// Errors of all groups of reactions of a run. `loaded` gives the scale; may be `run` itself.
 std::vector<LumpingError> lumping_errors(const InertiaRun& run, const InertiaRun& loaded);

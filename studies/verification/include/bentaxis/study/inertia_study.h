@@ -42,6 +42,11 @@ struct InertiaStudy {
   bool agrees() const;
 };
 
+/// Refuses a case whose block does not turn exactly as its shaft does.
+/// @param study  "an inertia study"
+/// @throws InputError naming the transfers that do
+void require_even_transfer(const Case& the_case, const std::string& study);
+
 /// Both models solve the same equations; what they may differ by, of peak.
 inline constexpr double kInertiaModelsAgree = 1e-10;
 /// N. A force between resolved teeth is their stiffness times a gap, which has the round-off of the
