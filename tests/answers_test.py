@@ -140,7 +140,7 @@ class AnswersTest(unittest.TestCase):
         flagged = [row for row in report["timing"] if row["flagged"]]
         limited = [row for row in report["timing"] if row["limit"] is not None]
         self.assertEqual([row["code"] for row in report["timing"] if row not in limited], ["connected-area"])
-        self.assertTrue(answers[1].startswith(f"Port timing: {len(flagged)} of {len(limited)} quantities with a limit exceed it: "))
+        self.assertTrue(answers[1].startswith(f"Port timing: {len(flagged)} of {len(limited)} quantities with a limit do not keep it: "))
 
     def test_turn(self):
         """compare, show and run say the same of the same turn, and it is what the curves hold."""

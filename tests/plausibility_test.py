@@ -268,7 +268,7 @@ class SaidTest(unittest.TestCase):
         rows = {row["code"]: row for row in json.loads((self.folder / "out" / "pressure.json").read_text())["timing"]}
         self.assertEqual({code for code, row in rows.items() if row["meant"]}, codes)
         answers = json.loads((self.folder / "out" / "pressure.json").read_text())["verdict"]["answers"]
-        self.assertRegex(answers[-1], rf"^Port timing: {len(codes)} of \d+ quantities with a limit exceed it, as intended\.$")
+        self.assertRegex(answers[-1], rf"^Port timing: {len(codes)} of \d+ quantities with a limit do not keep it, as intended\.$")
         # The plate that could be built gives its reasons itself.
         case = REPO / "cases" / "bap63_rated_timed_plate.toml"
         self.assertEqual(run("pressure", case, "--strict", cwd=self.folder).returncode, 0)

@@ -2,6 +2,7 @@
 
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/files/csv.h"
+#include "bentaxis/pump/counted.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/efficiency.h"
 #include "bentaxis/study/failed_points.h"
@@ -147,6 +148,30 @@ void add_overlay(report::Document& document, const OperatingPoint& first,
   document.runs->back().title = "Hydraulic model: " + second.the_case().name;
 }
 
+namespace {
+
+// Whether the case meets the printed numbers that a parameter was set to.
+std::string calibration_answer(const compare::PublishedSection& section) {
+  std::size_t held = 0;
+  std::vector<std::string> outside;
+  for (const compare::PublishedRow& row : section.rows) {
+    if (!row.number.calibrated() || row.verdict == compare::PublishedVerdict::not_comparable)
+      continue;
+    ++held;
+    if (row.verdict == compare::PublishedVerdict::outside)
+      outside.push_back(row.number.quantity + (row.at.empty() ? "" : ", " + row.at));
+  }
+  if (held == 0) return "No printed number that a parameter was set to applies to this case.";
+  if (outside.empty())
+    return fmt::format("Calibrated: {} that a parameter was set to {} inside.",
+                       counted(held, "printed number"), word_for(held, "is", "are"));
+  return fmt::format("Not calibrated: {} of {} that a parameter was set to {} outside: {}.",
+                     outside.size(), counted(held, "printed number"),
+                     word_for(outside.size(), "is", "are"), joined(outside, "; "));
+}
+
+}  // namespace
+
 void add_published(report::Document& document, compare::PublishedSection section) {
   const std::string text =
       section.summary.text() +
@@ -155,9 +180,9 @@ void add_published(report::Document& document, compare::PublishedSection section
       "models; a window is the range of a printed axis, which contains the printed curve.";
   document.verdict->agrees = section.calibrated();
   document.verdict->word = section.calibrated() ? "Calibrated" : "Not calibrated";
-  document.verdict->headline +=
-      (section.calibrated() ? " Every" : " Not every") +
-      std::string(" printed number that a parameter was set to is inside.");
+  const std::string answer = calibration_answer(section);
+  document.verdict->headline += " " + answer;
+  document.verdict->answers.insert(document.verdict->answers.begin(), answer);
   document.published = report::PublishedTable{text, std::move(section)};
 }
 

@@ -16,7 +16,7 @@ const variable = name => getComputedStyle(document.documentElement).getPropertyV
 const DASHES = [null, [8, 5], [2, 4]];  // by table; the first is solid
 const DASH = "\u2013";                  // stands for "not computed", never for zero
 const GOOD = ["agrees", "holds", "explained", "inside"];
-const BAD = ["incomplete", "differs", "violated", "exceeded", "unexplained", "not explained", "outside"];
+const BAD = ["incomplete", "differs", "violated", "exceeded", "too low", "unexplained", "not explained", "outside"];
 
 // Light to dark, as report/picture/elements.cpp has it; t from 0 to 1.
 const SHADES = [[247, 250, 252], [190, 214, 235], [107, 164, 207], [33, 103, 166], [8, 40, 88]];

@@ -95,11 +95,13 @@ const validity = ({ validity }) => !list(validity).length ? null : table([
   { head: "Consequence where violated", cell: r => r.consequence || DASH },
 ], validity, { rowClass: r => (r.violated ? "flag" : "") });
 
+// Speeds that must reach the case's own: their limit is the smallest value allowed.
+const isMinimum = r => ["suction-speed", "filling-speed"].includes(r.code);
 const timing = ({ timing }) => !list(timing).length ? null : table([
   { head: "Quantity", main: true, cell: r => r.quantity },
-  { head: "State", cell: r => r.limit == null ? DASH : r.meant ? "meant: " + r.meant : chip(r.flagged ? "exceeded" : "holds") },
+  { head: "State", cell: r => r.limit == null ? DASH : r.meant ? "meant: " + r.meant : chip(!r.flagged ? "holds" : isMinimum(r) ? "too low" : "exceeded") },
   { head: "Value", num: true, cell: r => unit(number(r.value), r.unit) },
-  { head: "Limit", num: true, cell: r => r.limit == null ? DASH : number(r.limit) },
+  { head: "Limit", num: true, cell: r => r.limit == null ? DASH : (isMinimum(r) ? "at least " : "") + number(r.limit) },
   { head: "Chamber angles", cell: r => list(r.angles).map(([a, b]) => `${number(a)} to ${number(b)}°`).join(", ")
       || (r.theta_deg == null ? DASH : degrees(r.theta_deg)) },
   { head: "Details", cell: r => r.text || DASH },

@@ -25,6 +25,7 @@ constexpr double kOvershoot = 0.1;       // of the mean delivery pressure, but a
 constexpr double kMinOvershoot = 10e5;   // Pa
 
 constexpr double kLargestFillingLoss = 0.01;  // of a stroke
+bool fills(double loss) { return loss <= kLargestFillingLoss; }
 
 // The search for a speed.
 constexpr double kFactor = 1.25;
@@ -143,7 +144,8 @@ TimingRow trapped(const hydraulics::Timing& t, const hydraulics::Summary& s) {
 TimingRow filling(const hydraulics::Timing::Filled& filled) {
   TimingRow r = row("filling", 100 * filled.loss);
   r.theta_deg = filled.at_deg;
-  hold(r, 100 * kLargestFillingLoss);
+  r.limit = 100 * kLargestFillingLoss;
+  r.flagged = !fills(filled.loss);
   r.text =
       fmt::format("{}: the chamber holds {:.4g} % of the oil it would hold at suction pressure",
                   r.flagged ? "not filled" : "filled", 100 * filled.ratio);
@@ -152,7 +154,25 @@ TimingRow filling(const hydraulics::Timing::Filled& filled) {
 
 std::string value_text(const TimingRow& r) {
   if (!r.bound.empty()) return r.bound;
-  return is_computed(r.value) ? fmt::format("{:.4g}", r.value) : "none";
+  if (!is_computed(r.value)) return "none";
+  const std::string text = fmt::format("{:.4g}", r.value);
+  // As many digits as show that the limit is not kept.
+  return r.flagged && r.limit && text == fmt::format("{:.4g}", *r.limit)
+             ? fmt::format("{:.7g}", r.value)
+             : text;
+}
+
+// Whether the limit is the smallest value allowed: a speed that is searched for must reach the
+// case's own.
+bool is_minimum(const TimingRow& r) {
+  const auto& all = timing_quantities();
+  return std::any_of(all.begin(), all.end(),
+                     [&](const TimingQuantity& q) { return q.code == r.code && q.searched; });
+}
+
+// "limit 0.5", "at least 1500", or "" where there is none.
+std::string limit_text(const TimingRow& r) {
+  return r.limit ? fmt::format("{} {:.4g}", is_minimum(r) ? "at least" : "limit", *r.limit) : "";
 }
 
 std::string angles_text(const TimingRow& r) {
@@ -215,8 +235,8 @@ std::vector<Warning> timing_warnings(const std::vector<TimingRow>& rows) {
     if (!r.flagged || !r.meant.empty()) continue;
     const std::string where = angles_text(r);
     warnings.push_back(
-        {r.code, fmt::format("{}: {} {}{}, limit {:.4g}; {}.", r.quantity, value_text(r), r.unit,
-                             where.empty() ? "" : " (" + where + ")", *r.limit, r.text)});
+        {r.code, fmt::format("{}: {} {}{}, {}; {}.", r.quantity, value_text(r), r.unit,
+                             where.empty() ? "" : " (" + where + ")", limit_text(r), r.text)});
   }
   return warnings;
 }
@@ -250,16 +270,23 @@ std::string timing_text(const std::vector<TimingRow>& rows) {
   std::string text;
   for (const TimingRow& r : rows)
     text += fmt::format("{:<17} {:>9} {:<25}{:<14}{:<8} {}\n", r.code, value_text(r), r.unit,
-                        r.limit ? fmt::format("limit {:.4g}", *r.limit) : "",
-                        !r.limit          ? ""
-                        : !r.flagged      ? "holds"
-                        : r.meant.empty() ? "EXCEEDED"
-                                          : "meant",
+                        limit_text(r),
+                        !r.limit           ? ""
+                        : !r.flagged       ? "holds"
+                        : !r.meant.empty() ? "meant"
+                        : is_minimum(r)    ? "TOO LOW"
+                                           : "EXCEEDED",
                         angles_text(r));
   return text;
 }
 
 namespace {
+
+// To the digits that the search finds and that are stated.
+double rounded_down(double rpm) {
+  const double step = std::pow(10, std::floor(std::log10(rpm)) - 3);
+  return std::floor(rpm / step) * step;
+}
 
 // Above 0 where the speed is below the one sought.
 using Margin = std::function<double(const hydraulics::SteadyState&)>;
@@ -270,21 +297,24 @@ SuctionSpeed search_speed(const Case& the_case, SuctionSpeed found, const Margin
     throw InputError(the_case.file.string() +
                      ": [operation] speed_rpm = " + number_text(the_case.operation.speed_rpm) +
                      ": must be > 0 to find the largest speed with complete filling");
+  const double own = the_case.operation.speed_rpm;
   Case at = the_case;
-  at.hydraulics->curve_error = std::max(at.hydraulics->curve_error, kSpeedCurveError);
   at.pressure.points = 0;
   const auto alive = [&](double) {
     if (progress) progress(std::min(0.95, 0.04 * found.solves));
   };
   const auto margin = [&](double rpm) {
     at.operation.speed_rpm = rpm;
+    // At the case's own speed as accurate as the case's state: the same loss, the same verdict.
+    at.hydraulics->curve_error = rpm == own
+                                     ? the_case.hydraulics->curve_error
+                                     : std::max(the_case.hydraulics->curve_error, kSpeedCurveError);
     const auto state = hydraulics::steady_state(at, {}, alive);
     ++found.solves;
     found.least = state.summary.chamber_least;
     if (state.timing.filled) found.losses.emplace_back(rpm, state.timing.filled->loss);
     return margin_of(state);
   };
-  const double own = the_case.operation.speed_rpm;
   double speed = own, here = margin(own);
   found.searched_from = found.searched_to = own;
   const bool up = here >= 0;
@@ -329,6 +359,8 @@ SuctionSpeed search_speed(const Case& the_case, SuctionSpeed found, const Margin
       found.rpm = kept;
       stop(at.operation.speed_rpm, error);
     }
+    // In the digits that are stated, so that the limit is kept at what is stated too.
+    found.rpm = std::max(rounded_down(*found.rpm), up ? own : 0);
   }
   if (progress) progress(1);
   return found;
@@ -397,11 +429,10 @@ TimingRow suction_speed_row(const Case& the_case, const SuctionSpeed& found) {
           found.losses.begin(), found.losses.end(), [&](const auto& a, const auto& b) {
             return std::abs(a.first - *found.rpm) < std::abs(b.first - *found.rpm);
           });
-      r.text += nearest.second <= 0
-                    ? "; at it the chambers fill"
-                    : fmt::format("; at it incomplete filling costs {}{}",
-                                  percent_of_stroke(nearest.second),
-                                  nearest.second > kLargestFillingLoss ? ": not filled" : "");
+      r.text += nearest.second <= 0 ? "; at it the chambers fill"
+                                    : fmt::format("; at it incomplete filling costs {}{}",
+                                                  percent_of_stroke(nearest.second),
+                                                  fills(nearest.second) ? "" : ": not filled");
     }
   }
   if (!found.stopped.empty()) r.text += "; the search ends " + found.stopped;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "bentaxis/analytic/model.h"
+#include "bentaxis/pump/counted.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/channels.h"
 #include "same_peak.h"
@@ -240,10 +241,10 @@ std::vector<std::string> TransferSummary::answers() const {
       for (std::size_t i = 0; i < std::min(kNamedSectors, sectors.size()); ++i)
         named.push_back(fmt::format("{:.4g} to {:.4g}", sectors[i].from_deg, sectors[i].to_deg));
       sentences.push_back(fmt::format(
-          "Walls: largest force {:.4g} N at {:.4g} deg (piston {}); {} hand-overs per turn, at "
-          "most {} {} at a time{}.",
-          wall_.value, wall_.theta_deg, wall_.piston, hand_overs(), most_walls_,
-          most_walls_ == 1 ? "piston" : "pistons",
+          "Walls: largest force {:.4g} N at {:.4g} deg (piston {}); {} per turn, at "
+          "most {} at a time{}.",
+          wall_.value, wall_.theta_deg, wall_.piston, counted(hand_overs(), "hand-over"),
+          counted(most_walls_, "piston"),
           named.empty() ? ""
                         : fmt::format("; piston 1 carries most at {}{} deg", fmt::join(named, ", "),
                                       sectors.size() > kNamedSectors ? ", .." : "")));

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "bentaxis/analytic/model.h"
+#include "bentaxis/pump/counted.h"
 #include "bentaxis/results/samples.h"
 #include "same_peak.h"
 
@@ -183,13 +184,13 @@ std::string timing_answer(const std::vector<TimingRow>& rows) {
     limited += row.limit.has_value();
   }
   if (names.empty() && meant > 0)
-    return fmt::format("{}{} of {} quantities with a limit exceed it, as intended.", kPortTiming,
-                       meant, limited);
+    return fmt::format("{}{} of {} with a limit {} not keep it, as intended.", kPortTiming, meant,
+                       counted(limited, "quantity", "quantities"), word_for(meant, "does", "do"));
   if (names.empty()) return std::string(kPortTiming) + "within all limits.";
   return fmt::format(
-      "{}{} of {} quantities with a limit exceed it: {}{} (pressure --advise: what to "
-      "change).",
-      kPortTiming, names.size(), limited, fmt::join(names, ", "),
+      "{}{} of {} with a limit {} not keep it: {}{} (pressure --advise: what to change).",
+      kPortTiming, names.size(), counted(limited, "quantity", "quantities"),
+      word_for(names.size(), "does", "do"), fmt::join(names, ", "),
       meant > 0 ? fmt::format("; {} more as intended", meant) : "");
 }
 
