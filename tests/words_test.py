@@ -583,15 +583,22 @@ class HelpTest(WordsTest):
             seen[" ".join(command)] = example
 
     def test_examples_run(self):
-        # Those that take seconds, one after the other in one empty directory, as a shell runs them.
-        for command in (["compare"], ["show"], ["regress"], ["index"], ["run"], ["outputs"], ["cases"], ["init"], ["sensitivity"],
-                        ["sweep"], ["reference", "golden"], ["reference", "update"], ["fmu"], ["schema"], ["completion"]):
-            example = self.run_program(*command, "--help").stdout.split("\nExample:\n")[1].strip()
+        # Of every command, one after the other in one empty directory, as a shell runs them.
+        seen = set()
+        for command in OptionNamesTest.commands(self):
+            text = self.run_program(*command, "--help").stdout
+            example = text.split("\nExample:\n")[1].strip()
+            if "(not in this build: " in " ".join(text.split()) or (command == ["manual"] and shutil.which("man") is None):
+                continue
+            if example in seen:  # of reference and of reference golden
+                continue
+            seen.add(example)
             with self.subTest(example):
-                done = subprocess.run(["bash", "-c", example], cwd=self.folder, stdin=subprocess.DEVNULL, capture_output=True,
-                                      text=True, timeout=SECONDS,
+                done = subprocess.run(["bash", "-o", "pipefail", "-c", example], cwd=self.folder, stdin=subprocess.DEVNULL,
+                                      capture_output=True, text=True, timeout=SECONDS,
                                       env={**os.environ, "PATH": f"{PROGRAM.parent}:{os.environ['PATH']}"})
-                self.assertEqual(done.returncode, DONE, done.stderr)
+                if "the documentation site is not there" not in done.stderr:
+                    self.assertEqual(done.returncode, DONE, done.stderr)
 
     def test_says_what_this_build_cannot_run(self):
         text, parts = self.run_program("--help").stdout, self.run_program("--version").stdout

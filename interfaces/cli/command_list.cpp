@@ -20,7 +20,7 @@ const std::vector<Group>& groups() {
        {{add_compare_command, "bentaxis compare bap63_rated --out out"},
         {add_show_command, "bentaxis show bap63_rated --out pump.svg"},
         {add_regress_command, "bentaxis regress --filter standstill --out regress"},
-        {add_hardcases_command, "bentaxis hardcases --filter zero_tilt --out hardcases"},
+        {add_hardcases_command, "bentaxis hardcases --filter tilt_45 --out hardcases"},
         {add_tradeoff_command,
          "bentaxis tradeoff bap63_rated --accuracies 1e-3 --max-seconds-per-run 1 --out tradeoff"},
         {add_score_command,
@@ -36,15 +36,25 @@ const std::vector<Group>& groups() {
       {"Study many designs",
        {{add_sweep_command,
          "bentaxis sweep bap63_rated --vary pump.tilt_deg=35:40:1 --output peak:Rb1 --out sweep"},
-        {add_merge_command, "bentaxis merge parts    # after: bentaxis sweep .. --part I/N"},
+        {add_merge_command,
+         "for i in 1 2; do\n"
+         "    bentaxis sweep bap63_rated --vary pump.tilt_deg=35:40:1 --output peak:Rb1 --part "
+         "$i/2 --out parts\n"
+         "  done\n"
+         "  bentaxis merge parts"},
         {add_optimise_command,
          "bentaxis optimise bap63_rated --vary pump.tilt_deg=30:42 --minimise peak:Rb1 "
          "--maximise displacement_cm3 --generations 5 --out optimise"},
         {add_sensitivity_command,
          "bentaxis sensitivity bap63_rated --output peak:Rb1 --vary pump.tilt_deg"},
         {add_uncertainty_command,
-         "bentaxis uncertainty bap63_rated --vary \"pump.tilt_deg=normal(40, 0.1)\" --samples 100"},
-        {add_identify_command, "bentaxis identify my.toml --data data.toml --fit-only"},
+         "bentaxis uncertainty bap63_rated --vary \"pump.tilt_deg=normal(40, 0.1)\" --samples 200"},
+        {add_identify_command,
+         "printf '%s\\n' 'schema = 1' '[[unknown]]' 'parameter = \"pressure.delivery_bar\"' "
+         "'between = [200, "
+         "350]' \\\n"
+         "    '[[number]]' 'output = \"mean:Td\"' 'value = 294.7' 'uncertainty = 0.5' > data.toml\n"
+         "  bentaxis identify bap63_rated --data data.toml --fit-only"},
         {add_rattle_command,
          "bentaxis rattle bap63_tooth_rattle --speeds 1000,1500 --delivery-bar 100:200:100"},
         {add_outputs_command, "bentaxis outputs bap63_rated"}}},

@@ -3,6 +3,7 @@
 #include "bentaxis/files/input_file.h"
 #include "bentaxis/files/kept_case.h"
 #include "bentaxis/files/whole_file.h"
+#include "bentaxis/pump/counted.h"
 #include "bentaxis/pump/lists.h"
 #include "bentaxis/study/reference_maker.h"
 #include "command_tools.h"
@@ -32,12 +33,12 @@ int make_new(const ReferenceOptions& options) {
   } else {
     const study::MappingGuess guess = study::guess_reference(the_case, options.from, options.sheet);
     proposals = study::proposal_text(guess) + std::to_string(guess.recognised()) + " of " +
-                std::to_string(guess.recognised() + guess.ignored.size()) + " columns recognised\n";
+                counted(guess.recognised() + guess.ignored.size(), "column") + " recognised\n";
     description = study::description_of(guess, options.source, options.tolerance);
     if (options.accept && !guess.unrecognised.empty())
       throw InputError(
           options.from + ": \"" + joined(guess.unrecognised, "\", \"") + "\"" +
-          (guess.unrecognised.size() > 1 ? ": these columns are" : ": this column is") +
+          word_for(guess.unrecognised.size(), ": this column is", ": these columns are") +
           " not recognised, although the names or sizes say a channel: --accept takes "
           "no such guess. Run the command without --accept, edit the proposal and "
           "give it by --mapping");
@@ -86,9 +87,10 @@ int update(const ReferenceOptions& options) {
     std::printf("%s", update.text.c_str());
     changed += update.rewritten ? 1 : 0;
   }
-  std::printf("%d of %zu golden folders rewritten", changed, set.golden.size());
+  std::printf("%d of %s rewritten", changed, counted(set.golden.size(), "golden folder").c_str());
   if (set.others > 0)
-    std::printf("; %d others (%s) are never written by the program", set.others, set.kinds.c_str());
+    std::printf("; %s (%s) %s never written by the program", counted(set.others, "other").c_str(),
+                set.kinds.c_str(), word_for(set.others, "is", "are").c_str());
   std::printf(".\n");
   return kDone;
 }
@@ -130,7 +132,9 @@ Command add_reference_command(CommandParser program) {
       "update", "Rewrite golden curves and say what changed; never touches other data");
   renew.option("dir", options->folder, Values("DIR").required(), "folder with references");
   const std::string group = "Commands";
-  make.place(group, "bentaxis reference new bap63_rated --from record.csv --accept");
+  make.place(group,
+             "bentaxis run bap63_rated --model analytic --out record\n"
+             "  bentaxis reference new bap63_rated --from record/analytic.csv --accept");
   golden.place(group, "bentaxis reference golden bap63_rated --out golden");
   renew.place(group, "bentaxis reference update golden");
   return {command, [=] {
