@@ -67,6 +67,15 @@ TEST(Output, IsFoundByItsName) {
   EXPECT_EQ(output("mean:budget.Td_inertia", base).unit, "Nm");
   EXPECT_THAT(refusal([&] { output("most:Td", base); }), testing::HasSubstr("no statistic"));
   EXPECT_THAT(refusal([&] { output("max:Rb3", base); }), testing::HasSubstr("did you mean"));
+  // What is suggested is a name that is taken, of the statistic that was asked for.
+  for (const auto& [name, meant] : {std::pair{"mean:Rb", "mean:Rb1"},
+                                    {"peak:Td_Nm", "peak:Td_z1_Nm"},
+                                    {"Td", "mean:Td"},
+                                    {"rms:Rb2_x", "rms:Rb2_x1_N"}}) {
+    EXPECT_THAT(refusal([&] { output(name, base); }),
+                testing::HasSubstr("did you mean \"" + std::string(meant) + "\"?"));
+    EXPECT_NO_THROW(output(meant, base));
+  }
   for (const std::string& name : output_names(base)) EXPECT_EQ(output(name, base).name, name);
 }
 

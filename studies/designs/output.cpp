@@ -223,6 +223,7 @@ std::vector<Output> single_outputs(const Case& base) {
             std::string(e.name) + " efficiency: " + e.meaning);
   if (is_hydraulic(base)) {
     hydraulics::SteadyState empty;
+    empty.summary.load_size = 1;  // named as what it is where there is one
     if (base.hydraulics && base.hydraulics->load) empty.summary.load = base.hydraulics->load->kind;
     for (const hydraulics::Line& line : hydraulics::lines(empty))
       add(Source::hydraulics, "hydraulics.", line.key, line.unit, line.name);
@@ -269,7 +270,17 @@ std::string lacking(const std::string& name, const Case& base) {
 }
 
 [[noreturn]] void unknown(const std::string& name, const Case& base) {
-  const auto names = output_names(base);
+  auto names = output_names(base);
+  const ChannelLayout layout(base.pump);
+  const std::string statistic = name.substr(0, name.find(':') + 1);  // npos + 1 is 0
+  if (Output o; statistic.empty() && find_channels(name, layout.channels(), o))
+    throw InputError("output " + name + ": needs a statistic; did you mean \"mean:" + name + "\"?");
+  if (!statistic.empty() && name.find("budget.") == std::string::npos) {
+    names.clear();  // those of the statistic that is asked for
+    for (const Channel& c : layout.channels())
+      if (can_be_asked_for(c))
+        for (const std::string& of : {c.name, vector_name(c)}) names.push_back(statistic + of);
+  }
   throw InputError("output " + name + ": unknown name" +
                    suggestion(name, {names.begin(), names.end()}, "listed by bentaxis outputs"));
 }
