@@ -114,7 +114,7 @@ TEST(CaseFile, RefusesWithFileLineKeyValueAndRange) {
       {"piston_length_mm = 46.0", "piston_length_mm = 5e-324",
        "[pump] piston_length_mm = 5e-324: must be 0 or, in SI units, of a magnitude"},
       {"delivery_bar = 275.0", "delivery_bar = 1e10",
-       "[pressure] delivery_bar = 1e10: must be a number, in [-1e+09, 1e+09]"},
+       "[pressure] delivery_bar = 1e10: must be in [-1e+09, 1e+09]"},
       {"mass_kg = 0.09", "mass_kg = 1e31",
        "[piston] mass_kg = 1e31: must be 0 or, in SI units, of a magnitude between 2.3e-308 and "
        "1e+30"},
