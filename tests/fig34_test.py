@@ -49,7 +49,7 @@ class Fig34Test(ProgramTest):
         # The words are those of the numbers.
         both = sum(r["inside_axes"] == r["reverses"] == "1" and r["drag"] == "0" for r in self.rows)
         self.assertIn(f"Without Cc {both} of 4 contact laws stay inside", result.out)
-        self.assertIn("backlash 20 um: 2 of 2 laws leave the axes", result.out)
+        self.assertRegex(result.out, r"backlash 20 um: of 2 laws 2 leave the printed axes, \d (does not|do not) change the sign in every pitch")
         titles = [s["title"] for s in self.report["runs"]]
         self.assertEqual(titles, ["Expectations", "By value"])
         self.assertEqual(len(self.report["rows"]), len(self.rows))
@@ -59,6 +59,16 @@ class Fig34Test(ProgramTest):
         self.check_points()
         self.check_windows(result)
         self.check_torque_that_keeps_the_sign()
+
+    def test_another_pressure_is_not_judged(self):
+        result = self.study("--approaches-um", "0.5", "--backlashes-um", "0", "--set", "pressure.delivery_bar=200")
+        self.assertEqual(self.report["verdict"]["word"], "Not applicable")
+        self.assertIn("Fig. 34 does not apply to this case: it is printed for the paper's pump at 275 bar and 1500 rpm "
+                      "(delivery_bar is 200, there 274 to 276).", result.out)
+        for word in ("rules out", "expected", "can be what is printed", "printed curve"):
+            self.assertNotIn(word, result.out)
+        self.assertEqual([s["title"] for s in self.report["runs"]], ["By value"])
+        self.assertEqual(len(self.rows), 4)
 
     def check_counts(self):
         """The table by value, from the rows of the file."""

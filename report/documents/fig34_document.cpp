@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "bentaxis/pump/counted.h"
 #include "document_parts.h"
 
 namespace bentaxis::study {
@@ -85,9 +86,10 @@ Lines ruled_out(const Fig34Study& s, bool drag) {
     for (const double value : values_of(s, of)) {
       const Count c = count(s, drag, of, value);
       if (c.both == 0)
-        lines.push_back(
-            fmt::format("{}: {} of {} laws leave the axes, {} do not reverse in every pitch",
-                        value_text(of, value), c.all - c.inside, c.all, c.all - c.reverses));
+        lines.push_back(fmt::format(
+            "{}: of {} {} the printed axes, {} the sign in every pitch", value_text(of, value),
+            counted(c.all, "law"), counted(c.all - c.inside, "leaves", "leave"),
+            counted(c.all - c.reverses, "does not change", "do not change")));
       else
         left.push_back({&of, value});
     }
@@ -99,8 +101,10 @@ Lines ruled_out(const Fig34Study& s, bool drag) {
       });
       if (c.all > 0 && c.both == 0)
         lines.push_back(fmt::format(
-            "{} together with {}: {} of {} leave the axes", value_text(*left[i].of, left[i].value),
-            value_text(*left[j].of, left[j].value), c.all - c.inside, c.all));
+            "{} together with {}: of {} {} the printed axes, {} the sign in every pitch",
+            value_text(*left[i].of, left[i].value), value_text(*left[j].of, left[j].value),
+            counted(c.all, "law"), counted(c.all - c.inside, "leaves", "leave"),
+            counted(c.all - c.reverses, "does not change", "do not change")));
     }
   return lines;
 }
@@ -154,10 +158,12 @@ Lines about(const Fig34Study& s, bool drag) {
     double spread = 0;
     for (const Fig34Curve* curve : curves) spread = std::max(spread, curve->largest_over.spread());
     lines.push_back(fmt::format(
-        "The motion of {} laws does not repeat: their largest force differs between {} windows of "
-        "{} turns by up to {:.0f} %. Longer runs can exceed the forces stated for them.",
-        c.unsettled, s.options.windows, s.options.turns, 100 * spread));
+        "The motion of {} does not repeat: {} largest force differs between {} of "
+        "{} by up to {:.0f} %. Longer runs can exceed the forces stated for them.",
+        counted(c.unsettled, "law"), word_for(c.unsettled, "its", "their"),
+        counted(s.options.windows, "window"), counted(s.options.turns, "turn"), 100 * spread));
   }
+  if (!s.applies()) return lines;  // nothing printed to hold them to
   if (c.both == 0) {
     lines.emplace_back("So none of them can be the printed curve.");
     return lines;
@@ -182,8 +188,16 @@ Lines about(const Fig34Study& s, bool drag) {
   return lines;
 }
 
+// Where the figure is not of this case.
+std::string does_not_apply(const Fig34Study& s) {
+  return "Fig. 34 does not apply to this case: it is printed for the paper's pump at 275 bar and "
+         "1500 rpm (" +
+         s.mismatch + ").";
+}
+
 std::string headline(const Fig34Study& s) {
   const Count c = count(s, false);
+  if (!s.applies()) return does_not_apply(s);
   std::string text = fmt::format(
       "Without Cc {} of {} contact laws stay inside the printed axes and reverse as printed{}",
       c.both, c.all, c.both > 1 ? ": the figure does not show which" : "");
@@ -192,14 +206,19 @@ std::string headline(const Fig34Study& s) {
     text += fmt::format("; with Cc {} of {}", d.both, d.all);
   }
   return text +
-         fmt::format(". {} of {} expectations hold.",
+         fmt::format(". {} of {} hold.",
                      report::count_of(s.expectations, [](const auto& e) { return e.holds(); }),
-                     s.expectations.size());
+                     counted(s.expectations.size(), "expectation"));
 }
 
 // What the printed figure says of the teeth, without and with the drag on the block.
 Lines answers_of(const Fig34Study& s) {
   Lines answers;
+  if (!s.applies())
+    return {
+        fmt::format("Without Cc {} of {} contact laws stay within {:g} N and change the sign of "
+                    "the tooth force in every pitch; none is compared with the figure.",
+                    count(s, false).both, count(s, false).all, kFig34Axes)};
   for (const bool drag : drags_of(s)) {
     const std::string name = drag_name(drag);
     const Lines out = ruled_out(s, drag);
@@ -218,11 +237,12 @@ Lines answers_of(const Fig34Study& s) {
 report::Summary summary_of(const Fig34Study& s) {
   report::Summary summary{
       fmt::format("The tooth force along x2 of compliant flanks at the case's pressure and {:g} "
-                  "rpm, {} windows of {} turns each after {} turns that are discarded. A law stays "
+                  "rpm, {} of {} each after {} discarded. A law stays "
                   "inside and reverses only where it does so in every window. Nothing is fitted: "
                   "the paper prints axes and a periodic change of sign, but no contact parameter.",
-                  s.the_case.operation.speed_rpm, s.options.windows, s.options.turns,
-                  s.options.turns_left_out),
+                  s.the_case.operation.speed_rpm, counted(s.options.windows, "window"),
+                  counted(s.options.turns, "turn"),
+                  counted(s.options.turns_left_out, "turn that is", "turns that are")),
       {}};
   Lines rigid = {
       fmt::format("Without Cc {}, {:.1f} N at 0 deg and {:.1f} N at 38 deg; {:g} changes "
@@ -261,8 +281,7 @@ report::Section expectations_section(const Fig34Study& s) {
       "for several values and counts as confirmed if it is inside for any of them. Found over "
       "block inertias of 1000, 1500 and 2000 kg mm2 and over consecutive windows of the same "
       "motion. Where these windows differ by more than 1 %, the motion does not repeat and the "
-      "range has two significant digits. The expected ranges are of the paper's pump at 275 "
-      "bar and 1500 rpm, whatever the case is.");
+      "range has two significant digits.");
   section.columns("what", "unit", "expected from", "to", "c, s/m", "found from", "to",
                   "differs between windows, %", "verdict");
   for (const Fig34Expectation& e : s.expectations)
@@ -372,10 +391,13 @@ report::Document fig34_document(const Fig34Study& s, const report::Lines& progra
       case_document(description, "What Fig. 34 can mean: " + s.the_case.name, program);
   document.verdict = {.agrees = std::nullopt,
                       .headline = headline(s),
-                      .word = s.as_expected() ? "As expected" : "Not all as expected",
+                      .word = !s.applies()      ? "Not applicable"
+                              : s.as_expected() ? "As expected"
+                                                : "Not all as expected",
                       .answers = answers_of(s)};
   document.summary = summary_of(s);
-  document.runs = {expectations_section(s), counts_section(s)};
+  document.runs = {counts_section(s)};
+  if (s.applies()) document.runs->insert(document.runs->begin(), expectations_section(s));
   document.records = records(s);
   document.figures = {curves_figure(s), scatter_figure(s)};
   return document;
@@ -416,6 +438,7 @@ std::string fig34_curves_csv(const Fig34Study& s) {
 std::string fig34_text(const Fig34Study& s) {
   std::string text = report::answers_text(s.the_case.name, headline(s), answers_of(s)) +
                      report::summary_text(summary_of(s));
+  if (!s.applies()) return text;
   text +=
       fmt::format("\n{:<68} {:>18}  {:>7} {:>18}\n", "expectation", "window", "c, s/m", "found");
   for (const Fig34Expectation& e : s.expectations)

@@ -9,6 +9,7 @@
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/reporting.h"
 #include "bentaxis/study/run.h"
+#include "paper_conditions.h"
 
 namespace bentaxis::study {
 namespace {
@@ -346,7 +347,8 @@ Fig34Study run_fig34_study(const Case& as_read, const Fig34Options& options,
   result.reversing_torque = std::max(0.0, result.rigid.greatest) * mesh.pitch_diameter / 2;
   if (result.the_case.operation.speed_rpm < 0)
     result.reversing_torque = std::max(0.0, -result.rigid.least) * mesh.pitch_diameter / 2;
-  add_expectations(study, result, progress_of("what was expected"));
+  result.mismatch = off_rated_condition(result.the_case);
+  if (result.applies()) add_expectations(study, result, progress_of("what was expected"));
   add_pictured(study, result);
   result.points = grid(result.options, drag);
   result.curves =

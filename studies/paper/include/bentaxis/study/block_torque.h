@@ -17,14 +17,15 @@ struct BlockTorque {
   int group = 0;     ///< what was changed: friction, pressure, geometry
   std::string what;  ///< in words
   double analytic = 0, multibody = 0;
-  double change = 0;  ///< of the analytic model against the first row
+  double change = 0;    ///< of the analytic model against the first row
+  bool has_gap = true;  ///< the pump, pressure and speed are those that the two torques are of
   double share() const { return change / (kPaperBlockTorque - kAdamsBlockTorque); }
 };
 
-/// One thing changed at a time in the rated pump, against that pump without piston friction.
+/// One thing changed at a time in a pump, against that pump without piston friction.
 /// @param ideal      the rated pump with an ideal pressure trace
 /// @param hydraulic  the same with the hydraulic model
-/// @throws InputError, ComputationError
+/// @throws InputError where the changes mean nothing for the cases; ComputationError
 std::vector<BlockTorque> block_torques(const Case& ideal, const Case& hydraulic,
                                        const PartProgress& progress_of = silent());
 

@@ -93,6 +93,9 @@ struct Fig34Expectation {
 
 struct Fig34Study {
   Case the_case;
+  /// What the case differs in from the pump, pressure and speed that the figure is of; "" where it
+  /// is that: else the figure does not apply, and nothing is expected.
+  std::string mismatch;
   Fig34Options options;
   Fig34Curve rigid, rigid_with_drag;       ///< the block turns as the shaft does
   double rigid_at_0 = 0, rigid_at_38 = 0;  ///< N, without drag
@@ -101,6 +104,7 @@ struct Fig34Study {
   std::vector<Fig34Curve> curves;  ///< of the points, without their forces
   std::vector<std::pair<std::string, Fig34Curve>> pictured;
   std::vector<Fig34Expectation> expectations;
+  bool applies() const { return mismatch.empty(); }
   bool as_expected() const;
 };
 
