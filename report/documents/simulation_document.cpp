@@ -14,6 +14,7 @@
 #include "bentaxis/study/motion_answers.h"
 #include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/pump_scene.h"
+#include "bentaxis/study/timing.h"
 #include "bentaxis/study/turn_summary.h"
 #include "document_parts.h"
 #include "fmu_section.h"
