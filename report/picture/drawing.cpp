@@ -40,16 +40,11 @@ Picture picture_of(const DrawingFigure& figure, const Curves&) {
   for (const DrawingFigure::Look& look : figure.looks)
     picture.legend[1].push_back(line_key(
         look.label, pick(kColours, static_cast<std::size_t>(look.colour)), look.filled ? 6 : 2.5));
-  if (figure.shades) {
-    picture.legend.emplace_back();
-    for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0})
-      picture.legend[2].push_back(shade_key(
-          with_unit(
-              short_number(figure.shades->low + t * (figure.shades->high - figure.shades->low)),
-              figure.shades->unit),
-          shade(t)));
-    picture.legend[2][0].label = figure.shades->label + ": " + picture.legend[2][0].label;
-  }
+  if (figure.shades)
+    picture.legend.push_back(scale_keys(figure.shades->label, [&](double t) {
+      const double value = figure.shades->low + t * (figure.shades->high - figure.shades->low);
+      return shade_key(with_unit(short_number(value), figure.shades->unit), shade(t));
+    }));
   for (std::size_t p = 0; p < figure.panels.size(); ++p) {
     const DrawingFigure::Panel& from = figure.panels[p];
     const double scale = (kRight - kLeft) / (from.x_high - from.x_low);

@@ -101,162 +101,219 @@ std::string distinct_number(double value, const Range& range) {
   return decimals <= std::max(shown, 0) ? text : fmt::format("{:.{}f}", value, decimals);
 }
 
+const Attributes kLabel = {
+    {"text-anchor", "middle"}, {"font-weight", "bold"},   {"fill", "#7a0c0c"}, {"stroke", "#fff"},
+    {"stroke-width", "4"},     {"paint-order", "stroke"}, {"class", "label"}};
+
+// A place within the frame.
+double in_frame(const Scale& scale, double value) {
+  return std::clamp(scale.place(value), std::min(scale.first, scale.last),
+                    std::max(scale.first, scale.last));
+}
+
+// A map with what is drawn of it. Shades and contours go by the logarithm of z, where it is not to
+// be linear.
+class Map {
+ public:
+  explicit Map(const MapFigure& figure)
+      : figure_(figure),
+        linear_(figure.linear || !figure.classes.empty()),
+        z_(figure.values),
+        x_edges_(edges_of(figure.x, figure.x_values)),
+        y_edges_(edges_of(figure.y, figure.y_values)) {
+    for (Values& row : z_)
+      for (double& v : row) {
+        if (!linear_) v = std::isfinite(v) && v > 0 ? std::log10(v) : not_computed();
+        range_.include(v);
+      }
+    if (linear_) range_.low = figure.z.from.value_or(std::min(range_.low, 0.0));
+    xs_.include(x_edges_);
+    ys_.include(y_edges_);
+  }
+
+  bool empty() const { return range_.empty(); }
+  std::vector<Keys> legend() const { return {shades(), marks()}; }
+
+  // With the picture's own copy of the map, which outlives the figure.
+  Panel panel() const {
+    Panel panel{figure_.x, figure_.y, figure_.y_values.size() > 1 ? 330.0 : 180.0, xs_, ys_};
+    panel.y_margin = Margin::none;
+    // Beside a single value an axis has nothing to say.
+    for (const auto& [values, ticks] : {std::pair{&figure_.x_values, &panel.x_ticks},
+                                        std::pair{&figure_.y_values, &panel.y_ticks}})
+      if (values->size() == 1) *ticks = {{values->front(), fmt::format("{:.6g}", values->front())}};
+    panel.draw = [map = *this](pugi::xml_node root, const Scale& x, const Scale& y) {
+      map.draw_cells(root, x, y);
+      map.draw_contours(root, x, y);
+      map.draw_lines(root, x, y);
+      map.draw_places(root, x, y);
+    };
+    return panel;
+  }
+
+ private:
+  std::string text(double v) const {
+    if (!figure_.classes.empty()) return figure_.classes.at(static_cast<std::size_t>(v));
+    return with_unit(linear_ ? distinct_number(v, range_) : short_number(v), figure_.z.unit);
+  }
+  std::string colour(double v) const {
+    if (!is_computed(v)) return "#fff";
+    if (!figure_.classes.empty()) return class_shade(v);
+    return shade((v - range_.low) / std::max(1e-12, range_.high - range_.low));
+  }
+  std::string reason(std::size_t i, std::size_t j) const {
+    return figure_.reasons.empty() ? "" : figure_.reasons.at(i).at(j);
+  }
+
+  Keys shades() const;
+  Keys marks() const;
+  void draw_cells(pugi::xml_node root, const Scale& x, const Scale& y) const;
+  void draw_contours(pugi::xml_node root, const Scale& x, const Scale& y) const;
+  void draw_lines(pugi::xml_node root, const Scale& x, const Scale& y) const;
+  void draw_places(pugi::xml_node root, const Scale& x, const Scale& y) const;
+
+  MapFigure figure_;
+  bool linear_;
+  std::vector<Values> z_;
+  Values x_edges_, y_edges_;
+  Range range_, xs_, ys_;  // of z_ and of the edges
+};
+
+Keys Map::shades() const {
+  if (figure_.classes.empty())
+    return scale_keys(figure_.z.label, [&](double t) {
+      const double v = range_.low + t * (range_.high - range_.low);
+      return shade_key(text(linear_ ? v : std::pow(10, v)), shade(t));
+    });
+  Keys keys;
+  for (std::size_t k = 0; k < figure_.classes.size(); ++k)
+    keys.push_back(shade_key(figure_.classes[k], class_shade(static_cast<double>(k))));
+  return keys;
+}
+
+Keys Map::marks() const {
+  Keys keys;
+  if (std::any_of(figure_.reasons.begin(), figure_.reasons.end(), [](const auto& row) {
+        return std::any_of(row.begin(), row.end(),
+                           [](const auto& reason) { return !reason.empty(); });
+      }))
+    keys.push_back({"infeasible", [](pugi::xml_node root, double x, double y) {
+                      hatch(root, x, y - 6, 30, 12);
+                    }});
+  for (std::size_t i = 0; i < figure_.lines.size(); ++i)
+    keys.push_back({figure_.lines[i].label, [i](pugi::xml_node root, double x, double y) {
+                      draw_line_over(
+                          root, fmt::format("M{} {}L{} {}", px(x), px(y), px(x + 30), px(y)), i);
+                    }});
+  if (figure_.marks)
+    keys.push_back({figure_.marks->label, [](pugi::xml_node root, double x, double y) {
+                      draw_dot_over(root, x + 15, y);
+                    }});
+  return keys;
+}
+
+void Map::draw_cells(pugi::xml_node root, const Scale& x, const Scale& y) const {
+  for (std::size_t i = 0; i < z_.size(); ++i)
+    for (std::size_t j = 0; j < z_[i].size(); ++j) {
+      const double x1 = in_frame(x, x_edges_[j]), x2 = in_frame(x, x_edges_[j + 1]);
+      const double y1 = in_frame(y, y_edges_[i + 1]), y2 = in_frame(y, y_edges_[i]);
+      const double value = figure_.values[i][j];
+      const std::string why = reason(i, j);
+      pugi::xml_node cell = add(root, "rect",
+                                {{"x", px(x1)},
+                                 {"y", px(y1)},
+                                 {"width", px(x2 - x1 + 0.6)},
+                                 {"height", px(y2 - y1 + 0.6)},
+                                 {"fill", colour(z_[i][j])}});
+      cell.append_child("title").text() =
+          fmt::format("{} {}, {} {}: {}", figure_.x.label,
+                      with_unit(short_number(figure_.x_values[j]), figure_.x.unit), figure_.y.label,
+                      with_unit(short_number(figure_.y_values[i]), figure_.y.unit),
+                      is_computed(value) ? text(value)
+                      : why.empty()      ? "not computed"
+                                         : why)
+              .c_str();
+      if (!is_computed(value) && !why.empty()) hatch(root, x1, y1, x2 - x1, y2 - y1);
+    }
+}
+
+void Map::draw_contours(pugi::xml_node root, const Scale& x, const Scale& y) const {
+  Values px_x, px_y;
+  for (const double v : figure_.x_values) px_x.push_back(x.place(v));
+  for (const double v : figure_.y_values) px_y.push_back(y.place(v));
+  std::vector<Pixel> labelled;
+  for (const double level : figure_.contours) {
+    const auto pieces = contour(px_x, px_y, z_, linear_ ? level : std::log10(level));
+    if (pieces.empty()) continue;
+    std::string path;
+    for (const auto& [a, b] : pieces)
+      path += fmt::format("M{} {}L{} {}", px(a[0]), px(a[1]), px(b[0]), px(b[1]));
+    add(root, "path",
+        {{"d", path}, {"stroke", "#fff"}, {"stroke-width", "4"}, {"stroke-linecap", "round"}});
+    add(root, "path",
+        {{"class", "contour"},
+         {"d", path},
+         {"stroke", "#a11212"},
+         {"stroke-width", "1.8"},
+         {"stroke-linecap", "round"}});
+    const Pixel& at = pieces[pieces.size() / 2][0];
+    // Where lines crowd not every one has room for its value.
+    if (std::any_of(labelled.begin(), labelled.end(), [&](const Pixel& other) {
+          return std::abs(other[0] - at[0]) < 60 && std::abs(other[1] - at[1]) < 14;
+        }))
+      continue;
+    labelled.push_back(at);
+    add_text(root, std::clamp(at[0], kLeft + 24, kRight - 24), at[1] - 6, text(level), kLabel);
+  }
+}
+
+void Map::draw_lines(pugi::xml_node root, const Scale& x, const Scale& y) const {
+  for (std::size_t i = 0; i < figure_.lines.size(); ++i) {
+    const XySeries& line = figure_.lines[i];
+    const auto shown = [&](std::size_t k) {
+      return k < line.x.size() && x.shows(line.x[k]) && y.shows(line.y[k]);
+    };
+    std::string path;
+    for (std::size_t k = 0; k < line.x.size(); ++k) {
+      if (!shown(k)) continue;
+      const bool begins = k == 0 || !shown(k - 1);
+      const double at_x = x.place(line.x[k]), at_y = y.place(line.y[k]);
+      if (begins && !shown(k + 1)) {  // a place alone: across its row
+        const auto row = std::upper_bound(y_edges_.begin(), y_edges_.end(), line.y[k]);
+        if (row == y_edges_.begin() || row == y_edges_.end()) continue;
+        path += fmt::format("M{0} {1}L{0} {2}", px(at_x), px(in_frame(y, *(row - 1))),
+                            px(in_frame(y, *row)));
+      } else {
+        path += fmt::format("{}{} {}", begins ? "M" : "L", px(at_x), px(at_y));
+      }
+    }
+    if (!path.empty()) draw_line_over(root, path, i);
+  }
+}
+
+// Dots, and places by name.
+void Map::draw_places(pugi::xml_node root, const Scale& x, const Scale& y) const {
+  if (figure_.marks)
+    for (std::size_t k = 0; k < figure_.marks->x.size(); ++k)
+      draw_dot_over(root, x.place(figure_.marks->x[k]), y.place(figure_.marks->y[k]));
+  for (const NamedPoint& p : figure_.points) {
+    if (p.x < xs_.low || p.x > xs_.high || p.y < ys_.low || p.y > ys_.high) continue;
+    add(root, "circle",
+        {{"cx", px(x.place(p.x))},
+         {"cy", px(y.place(p.y))},
+         {"r", "4.5"},
+         {"fill", "#e69f00"},
+         {"stroke", "#000"}});
+    add_text(root, x.place(p.x), y.place(p.y) - 9, p.label, kLabel);
+  }
+}
+
 }  // namespace
 
-// Shades and contours go by the logarithm of z, where it is not to be linear.
 Picture picture_of(const MapFigure& figure, const Curves&) {
-  Picture picture;
-  std::vector<Values> z = figure.values;
-  const bool linear = figure.linear || !figure.classes.empty();
-  Range range, xs, ys;
-  for (Values& row : z)
-    for (double& v : row) {
-      if (!linear) v = std::isfinite(v) && v > 0 ? std::log10(v) : not_computed();
-      range.include(v);
-    }
-  if (range.empty()) return picture;
-  if (linear) range.low = figure.z.from.value_or(std::min(range.low, 0.0));
-  const Values x_edges = edges_of(figure.x, figure.x_values);
-  const Values y_edges = edges_of(figure.y, figure.y_values);
-  xs.include(x_edges);
-  ys.include(y_edges);
-  const auto text = [&figure, linear, range](double v) {
-    if (!figure.classes.empty()) return figure.classes.at(static_cast<std::size_t>(v));
-    return with_unit(linear ? distinct_number(v, range) : short_number(v), figure.z.unit);
-  };
-  const auto colour = [&figure, range](double v) {
-    if (!is_computed(v)) return std::string("#fff");
-    if (!figure.classes.empty()) return class_shade(v);
-    return shade((v - range.low) / std::max(1e-12, range.high - range.low));
-  };
-  picture.legend.emplace_back();
-  if (!figure.classes.empty()) {
-    for (std::size_t k = 0; k < figure.classes.size(); ++k)
-      picture.legend[0].push_back(
-          shade_key(figure.classes[k], class_shade(static_cast<double>(k))));
-  } else {
-    for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-      const double v = range.low + t * (range.high - range.low);
-      picture.legend[0].push_back(shade_key(text(linear ? v : std::pow(10, v)), shade(t)));
-    }
-    picture.legend[0][0].label = figure.z.label + ": " + picture.legend[0][0].label;
-  }
-  picture.legend.emplace_back();
-  if (std::ranges::any_of(figure.reasons, [](const auto& row) {
-        return std::ranges::any_of(row, [](const auto& reason) { return !reason.empty(); });
-      }))
-    picture.legend[1].push_back({"infeasible", [](pugi::xml_node root, double x, double y) {
-                                   hatch(root, x, y - 6, 30, 12);
-                                 }});
-  for (std::size_t i = 0; i < figure.lines.size(); ++i)
-    picture.legend[1].push_back(
-        {figure.lines[i].label, [i](pugi::xml_node root, double x, double y) {
-           draw_line_over(root, fmt::format("M{} {}L{} {}", px(x), px(y), px(x + 30), px(y)), i);
-         }});
-  if (figure.marks)
-    picture.legend[1].push_back({figure.marks->label, [](pugi::xml_node root, double x, double y) {
-                                   draw_dot_over(root, x + 15, y);
-                                 }});
-  Panel panel{figure.x, figure.y, figure.y_values.size() > 1 ? 330.0 : 180.0, xs, ys};
-  panel.y_margin = Margin::none;
-  // Beside a single value an axis has nothing to say.
-  for (const auto& [values, ticks] :
-       {std::pair{&figure.x_values, &panel.x_ticks}, std::pair{&figure.y_values, &panel.y_ticks}})
-    if (values->size() == 1) *ticks = {{values->front(), fmt::format("{:.6g}", values->front())}};
-  panel.draw = [=](pugi::xml_node root, const Scale& x, const Scale& y) {
-    Values px_x, px_y;
-    for (const double v : figure.x_values) px_x.push_back(x.place(v));
-    for (const double v : figure.y_values) px_y.push_back(y.place(v));
-    const auto in_frame = [](const Scale& s, double v) {
-      return std::clamp(s.place(v), std::min(s.first, s.last), std::max(s.first, s.last));
-    };
-    for (std::size_t i = 0; i < z.size(); ++i)
-      for (std::size_t j = 0; j < z[i].size(); ++j) {
-        const double x1 = in_frame(x, x_edges[j]), x2 = in_frame(x, x_edges[j + 1]);
-        const double y1 = in_frame(y, y_edges[i + 1]), y2 = in_frame(y, y_edges[i]);
-        const std::string reason = figure.reasons.empty() ? "" : figure.reasons.at(i).at(j);
-        pugi::xml_node cell = add(root, "rect",
-                                  {{"x", px(x1)},
-                                   {"y", px(y1)},
-                                   {"width", px(x2 - x1 + 0.6)},
-                                   {"height", px(y2 - y1 + 0.6)},
-                                   {"fill", colour(z[i][j])}});
-        cell.append_child("title").text() =
-            fmt::format("{} {}, {} {}: {}", figure.x.label,
-                        with_unit(short_number(figure.x_values[j]), figure.x.unit), figure.y.label,
-                        with_unit(short_number(figure.y_values[i]), figure.y.unit),
-                        is_computed(figure.values[i][j]) ? text(figure.values[i][j])
-                        : reason.empty()                 ? "not computed"
-                                                         : reason)
-                .c_str();
-        if (!is_computed(figure.values[i][j]) && !reason.empty())
-          hatch(root, x1, y1, x2 - x1, y2 - y1);
-      }
-    const Attributes label = {{"text-anchor", "middle"}, {"font-weight", "bold"},
-                              {"fill", "#7a0c0c"},       {"stroke", "#fff"},
-                              {"stroke-width", "4"},     {"paint-order", "stroke"},
-                              {"class", "label"}};
-    std::vector<Pixel> labelled;
-    for (const double level : figure.contours) {
-      const auto pieces = contour(px_x, px_y, z, linear ? level : std::log10(level));
-      if (pieces.empty()) continue;
-      std::string path;
-      for (const auto& [a, b] : pieces)
-        path += fmt::format("M{} {}L{} {}", px(a[0]), px(a[1]), px(b[0]), px(b[1]));
-      add(root, "path",
-          {{"d", path}, {"stroke", "#fff"}, {"stroke-width", "4"}, {"stroke-linecap", "round"}});
-      add(root, "path",
-          {{"class", "contour"},
-           {"d", path},
-           {"stroke", "#a11212"},
-           {"stroke-width", "1.8"},
-           {"stroke-linecap", "round"}});
-      const Pixel& at = pieces[pieces.size() / 2][0];
-      // Where lines crowd not every one has room for its value.
-      const bool room = std::ranges::none_of(labelled, [&](const Pixel& other) {
-        return std::abs(other[0] - at[0]) < 60 && std::abs(other[1] - at[1]) < 14;
-      });
-      if (!room) continue;
-      labelled.push_back(at);
-      add_text(root, std::clamp(at[0], kLeft + 24, kRight - 24), at[1] - 6, text(level), label);
-    }
-    for (std::size_t i = 0; i < figure.lines.size(); ++i) {
-      const XySeries& line = figure.lines[i];
-      const auto shown = [&](std::size_t k) {
-        return k < line.x.size() && x.shows(line.x[k]) && y.shows(line.y[k]);
-      };
-      std::string path;
-      for (std::size_t k = 0; k < line.x.size(); ++k) {
-        if (!shown(k)) continue;
-        const bool begins = k == 0 || !shown(k - 1);
-        const double at_x = x.place(line.x[k]), at_y = y.place(line.y[k]);
-        if (begins && !shown(k + 1)) {  // a place alone: across its row
-          const auto row = std::ranges::upper_bound(y_edges, line.y[k]);
-          if (row == y_edges.begin() || row == y_edges.end()) continue;
-          path += fmt::format("M{0} {1}L{0} {2}", px(at_x), px(in_frame(y, *(row - 1))),
-                              px(in_frame(y, *row)));
-        } else {
-          path += fmt::format("{}{} {}", begins ? "M" : "L", px(at_x), px(at_y));
-        }
-      }
-      if (!path.empty()) draw_line_over(root, path, i);
-    }
-    if (figure.marks)
-      for (std::size_t k = 0; k < figure.marks->x.size(); ++k)
-        draw_dot_over(root, x.place(figure.marks->x[k]), y.place(figure.marks->y[k]));
-    for (const NamedPoint& p : figure.points) {
-      if (p.x < xs.low || p.x > xs.high || p.y < ys.low || p.y > ys.high) continue;
-      add(root, "circle",
-          {{"cx", px(x.place(p.x))},
-           {"cy", px(y.place(p.y))},
-           {"r", "4.5"},
-           {"fill", "#e69f00"},
-           {"stroke", "#000"}});
-      add_text(root, x.place(p.x), y.place(p.y) - 9, p.label, label);
-    }
-  };
-  picture.panels.push_back(std::move(panel));
-  return picture;
+  const Map map(figure);
+  if (map.empty()) return {};
+  return {map.legend(), {map.panel()}};
 }
 
 }  // namespace bentaxis::report::picture

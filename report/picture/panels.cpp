@@ -97,6 +97,13 @@ Key shade_key(const std::string& label, const std::string& colour) {
           }};
 }
 
+Keys scale_keys(const std::string& name, const std::function<Key(double)>& key) {
+  Keys keys;
+  for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) keys.push_back(key(t));
+  keys[0].label = name + ": " + keys[0].label;
+  return keys;
+}
+
 std::string drawn(const Figure& figure, const Picture& picture) {
   pugi::xml_document document;
   pugi::xml_node root = add(document, "svg",

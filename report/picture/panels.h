@@ -42,6 +42,9 @@ Key line_key(const std::string& label, const std::string& colour, double width,
              const std::string& dash = "none", double opacity = 1);
 /// A filled box.
 Key shade_key(const std::string& label, const std::string& colour);
+/// Five keys from one end of a scale to the other, behind the name of what is shown.
+/// @param key  of a place in [0, 1]
+Keys scale_keys(const std::string& name, const std::function<Key(double)>& key);
 
 struct Picture {
   std::vector<Keys> legend;  ///< rows, broken where they are too long

@@ -63,13 +63,11 @@ Picture picture_of(const ParallelFigure& figure, const Curves&) {
   const std::size_t by = std::min(figure.colour_by, count - 1);
   const Scale colours = scale(by, 0, 1);
   picture.legend.resize(2);
-  for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+  picture.legend[0] = scale_keys(figure.columns[by].label, [&](double t) {
     const double value = colours.log ? colours.low * std::pow(colours.high / colours.low, t)
                                      : colours.low + t * (colours.high - colours.low);
-    picture.legend[0].push_back(
-        line_key(with_unit(short_number(value), figure.columns[by].unit), line_shade(t), 3));
-  }
-  picture.legend[0][0].label = figure.columns[by].label + ": " + picture.legend[0][0].label;
+    return line_key(with_unit(short_number(value), figure.columns[by].unit), line_shade(t), 3);
+  });
   if (!figure.marked.empty())
     picture.legend[1].push_back(line_key(figure.marked_label, "#000000", 2));
   const std::vector<PlacedName> places = placed(names);
