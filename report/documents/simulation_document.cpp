@@ -11,7 +11,6 @@
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/comparison.h"
-#include "bentaxis/study/motion_answers.h"
 #include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/timing.h"
@@ -43,19 +42,17 @@ std::string milliseconds(double seconds) {
   return fmt::format("{:.4g} ms", seconds * kMilliseconds);
 }
 
-// What is said of the motion. Of the first model: where both agree, that of the other is the same.
-struct Said {
-  MotionAnswers answers;
-  std::vector<double> times_s;  // of the rows
-  explicit Said(const SimulationResult& r) : Said(*runs_of(r).front().second, r.ready.the_case) {}
-  Said(const Trajectory& run, const Case& the_case) : answers(motion_answers(run, the_case)) {
-    for (std::size_t row = 0; row < run.lag.size(); ++row)
-      times_s.push_back(run.state(row, StateColumn::time));
-  }
-};
+// Of the rows of the run that answers.
+std::vector<double> seconds_of(const SimulationResult& r) {
+  std::vector<double> seconds;
+  const Trajectory& run = *runs_of(r).front().second;
+  for (std::size_t row = 0; row < run.lag.size(); ++row)
+    seconds.push_back(run.state(row, StateColumn::time));
+  return seconds;
+}
 
-std::vector<std::string> sentences_of(const Said& said) {
-  const MotionAnswers& a = said.answers;
+std::vector<std::string> sentences_of(const SimulationResult& r) {
+  const MotionAnswers& a = r.answers;
   std::vector<std::string> answers;
   if (a.reached_s)
     answers.push_back(fmt::format(
@@ -92,7 +89,7 @@ std::vector<std::string> sentences_of(const Said& said) {
     answers.push_back(fmt::format("Block: {:.4g} to {:.4g} deg behind the shaft.",
                                   a.walls->lag_deg[0], a.walls->lag_deg[1]));
   }
-  append(answers, limit_answers(a.limits, said.times_s));
+  append(answers, limit_answers(a.limits, seconds_of(r)));
   return answers;
 }
 
@@ -134,7 +131,7 @@ std::vector<report::Warning> doubts_of(const SimulationResult& r) {
   return warnings;
 }
 
-std::vector<report::Warning> warnings_of(const SimulationResult& r, const Said& said) {
+std::vector<report::Warning> warnings_of(const SimulationResult& r) {
   std::vector<report::Warning> warnings;
   if (r.oil_follows)
     warnings = doubts_of(r);
@@ -144,7 +141,7 @@ std::vector<report::Warning> warnings_of(const SimulationResult& r, const Said& 
          fmt::format("the chamber pressure is the periodic one of {:g} rpm at every speed of the "
                      "motion; the oil does not follow it.",
                      r.ready.the_case.operation.speed_rpm)});
-  append(warnings, limit_warnings(said.answers.limits, said.times_s));
+  append(warnings, limit_warnings(r.answers.limits, seconds_of(r)));
   if (r.ready.hydraulics)
     if (auto warning = accuracy_warning(r.ready.the_case, *r.ready.hydraulics))
       warnings.push_back(std::move(*warning));
@@ -180,19 +177,19 @@ report::KeyFigures key_figures_of(const SimulationResult& r) {
   return key;
 }
 
-report::Verdict verdict_of(const SimulationResult& r, const Said& said) {
+report::Verdict verdict_of(const SimulationResult& r) {
   report::Verdict verdict{r.agrees(), r.headline()};
   if (r.choice.only) verdict.word = r.agrees() ? "Balanced" : "Not balanced";
   if (!r.choice.only) verdict.tolerance = r.choice.error;
-  verdict.answers = sentences_of(said);
-  verdict.not_valid = not_valid_text(said.answers.limits, said.times_s);
+  verdict.answers = sentences_of(r);
+  verdict.not_valid = not_valid_text(r.answers.limits, seconds_of(r));
   return verdict;
 }
 
-std::vector<report::ValidityRow> validity_of(const Said& said) {
-  std::vector<report::ValidityRow> rows = validity_section(said.answers.limits);
+std::vector<report::ValidityRow> validity_of(const SimulationResult& r) {
+  std::vector<report::ValidityRow> rows = validity_section(r.answers.limits);
   for (std::size_t i = 0; i < rows.size(); ++i)
-    rows[i].time_s = said.times_s[said.answers.limits[i].row];
+    rows[i].time_s = runs_of(r).front().second->state(r.answers.limits[i].row, StateColumn::time);
   return rows;
 }
 
@@ -206,8 +203,7 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
   document.program = program;
   put_description(document, description, scene_of(r));
   document.derived = derived_section(the_case);
-  const Said said(r);
-  document.verdict = verdict_of(r, said);
+  document.verdict = verdict_of(r);
   document.meaning =
       r.choice.only
           ? "One model's motion, integrated once. Its balances of work, energy and mass say how "
@@ -227,10 +223,10 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
             "in time. Agreement verifies that both solve the same equations. Whether a pump "
             "behaves like this is validation (docs/limits.md).";
   document.key_figures = key_figures_of(r);
-  report::append(document.warnings, warnings_of(r, said));
+  report::append(document.warnings, warnings_of(r));
   if (!r.choice.only) document.common = common_inputs(the_case, true, r.oil_follows);
   document.checks = r.checks;
-  document.validity = validity_of(said);
+  document.validity = validity_of(r);
   document.models.emplace();
   document.runs = simulation_sections(r);
   for (const auto& [name, run] : runs_of(r)) {
@@ -250,8 +246,7 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
 }
 
 std::string simulation_text(const SimulationResult& r) {
-  const Said said(r);
-  std::string text = report::answers_text(r.ready.the_case.name, r.headline(), sentences_of(said));
+  std::string text = report::answers_text(r.ready.the_case.name, r.headline(), sentences_of(r));
   if (!r.groups.empty()) {
     text += fmt::format("{:<13} {:<17} {:>13} {:>16} {:>12}\n", "group", "       peak",
                         r.choice.steady ? "of peak" : "of peak, time",
@@ -289,7 +284,7 @@ std::string simulation_text(const SimulationResult& r) {
                         r.integration_change);
   if (!r.multibody_choice.empty()) text += "chosen " + r.multibody_choice + "\n";
   if (r.choice.unit) text += coupling_text(r);
-  for (const report::Warning& warning : warnings_of(r, said))
+  for (const report::Warning& warning : warnings_of(r))
     text += fmt::format("warning: {}: {}\n", warning.name, warning.text);
   return text;
 }

@@ -488,10 +488,7 @@ namespace {
 study::MotionAnswers motion_of(const Case& the_case, study::Model model) {
   study::SimulationChoice choice;
   choice.only = model;
-  const study::SimulationResult found =
-      study::simulate(study::prepare_simulation(the_case, choice), choice);
-  return study::motion_answers(model == study::Model::analytic ? *found.analytic : *found.multibody,
-                               the_case);
+  return study::simulate(study::prepare_simulation(the_case, choice), choice).answers;
 }
 
 // @param prepared  the case made ready, which costs what it takes where it is asked for first

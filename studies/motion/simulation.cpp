@@ -85,6 +85,8 @@ SimulationResult simulate(PreparedCase ready, const SimulationChoice& choice,
   result.oil_follows = result.ready.the_case.pressure.kind == PressureKind::hydraulic &&
                        choice.oil == OilInTime::follows;
   run_simulation(result, progress_of);
+  result.answers =
+      motion_answers(result.analytic ? *result.analytic : *result.multibody, result.ready.the_case);
   return result;
 }
 

@@ -12,6 +12,7 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/trajectory.h"
 #include "bentaxis/study/fmu_coupling.h"
+#include "bentaxis/study/motion_answers.h"
 #include "bentaxis/study/run.h"
 
 namespace bentaxis::study {
@@ -113,6 +114,8 @@ struct SimulationResult {
   /// peak, at a tolerance ten times looser; not_computed() elsewhere.
   double integration_change = not_computed();
   std::optional<Trajectory> analytic, multibody;
+  /// Of the first of them: where both agree, those of the other are the same.
+  MotionAnswers answers;
 
   // With the analytic model: how much a disturbance of the start grows.
   double disturbance = 0;
