@@ -22,7 +22,8 @@ shown=$(nm -D --defined-only "$library" | awk '{print $NF}' | sed 's/@.*//')
 others=$(grep -vE '^fmi[23][A-Z]' <<< "$shown" || true)
 [ -z "$others" ] || say "shows $others"
 for version in 2 3; do
-  names=$(grep -oE "X\(fmi${version}[A-Za-z0-9]+\)" "$sources/interfaces/fmu/interface/fmi$version.h" | tr -d 'X()')
+  names=$(grep -oE "X\([^,()]+, *fmi${version}[A-Za-z0-9]+" "$sources/interfaces/fmu/interface/fmi$version.h" | sed 's/.*, *//')
+  [ "$(wc -w <<< "$names")" = "$(grep -c "^fmi$version" <<< "$shown")" ] || say "has not as many functions of FMI $version as fmi$version.h"
   for name in $names; do
     grep -qx "$name" <<< "$shown" || say "lacks $name"
   done

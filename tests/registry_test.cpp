@@ -288,7 +288,7 @@ TEST(Teeth, PitchErrorsAreReadToothByTooth) {
   EXPECT_DOUBLE_EQ(teeth.shaft.pitch[2], 3e-6);
   EXPECT_DOUBLE_EQ(teeth.block.pitch[19], -40e-6);
   write("1,0,0\n");
-  EXPECT_THAT(refusal(read), HasSubstr("has 1 teeth, must be tooth_number = 20"));
+  EXPECT_THAT(refusal(read), HasSubstr("has 1 tooth, must be tooth_number = 20"));
   write("2" + lines.substr(1));
   EXPECT_THAT(refusal(read), HasSubstr(":2: tooth"));
 }

@@ -571,7 +571,7 @@ TEST(ClearanceOfEachPiston, IsReadAndRefused) {
   EXPECT_EQ(refused(good), "accepted");
   EXPECT_THAT(refused("piston,um\n1,0\n"), HasSubstr("header must be piston,deviation_um"));
   EXPECT_THAT(refused("piston,deviation_um\n1,0\n"),
-              HasSubstr("has 1 pistons, must be [pump] pistons = 7"));
+              HasSubstr("has 1 piston, must be [pump] pistons = 7"));
   EXPECT_THAT(refused(good, {"pump.pistons=5"}), HasSubstr("[pump] pistons = 5"));
   const auto with = [&](const std::string& row, const std::string& other) {
     std::string text = good;

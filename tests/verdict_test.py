@@ -333,8 +333,8 @@ class NotCompared(unittest.TestCase):
             self.assertIn(name + ": Drive torque: mean ", done.stdout)
             self.assertIn(name + ": Port timing: ", done.stdout)
         self.assertIn(names[1] + ": Not valid over ", done.stdout)
-        self.assertRegex(done.stderr, r"(?s)^pump of the analytic model: \S*bap63_rated_hydraulic.toml\n.*"
-                         r"pump of the multibody model: \S*second.toml\n.*warning: block-lifts-off: ")
+        self.assertRegex(done.stderr, r"(?s)^pump: analytic model, \S*bap63_rated_hydraulic.toml: .*\n"
+                         r"pump: multibody model, \S*second.toml: .*warning: block-lifts-off: ")
         self.assertTrue(any(w["text"].startswith(names[1] + ": over ") for w in report["warnings"]))
 
     @staticmethod

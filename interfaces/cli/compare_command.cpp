@@ -59,9 +59,6 @@ std::string all_transfers() {
 bool is_transfer(const std::string& text) { return text.starts_with(kTransfer); }
 Case read_with(CaseOption of, const std::string& option,
                const std::vector<std::string>& assumptions, bool two_pumps) {
-  // Whose pump the next lines are about.
-  if (two_pumps)
-    std::fprintf(stderr, "pump of the %s model: %s\n", option.c_str() + 2, of.file.c_str());
   for (const std::string& text : assumptions) {
     if (!is_transfer(text)) continue;
     const std::string kind = text.substr(std::size(kTransfer) - 1);
@@ -69,7 +66,7 @@ Case read_with(CaseOption of, const std::string& option,
       throw InputError(option + " " + text + ": must be " + all_transfers());
     of.changes.push_back("transfer.kind=" + kind);
   }
-  return of.read();
+  return of.read(two_pumps ? option.substr(2) + " model, " + of.file + ": " : "");
 }
 
 // @return whether every engine has given results

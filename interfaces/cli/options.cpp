@@ -26,10 +26,10 @@ std::vector<std::string> changeable_keys() {
 
 }  // namespace
 
-Case CaseOption::read() const {
+Case CaseOption::read(const std::string& whose) const {
   Case the_case = read_case(file, changes);
   const study::Plausibility looked = study::plausibility(the_case);
-  std::fprintf(stderr, "pump: %s\n", looked.summary().c_str());
+  std::fprintf(stderr, "pump: %s%s\n", whose.c_str(), looked.summary().c_str());
   const char* kind = strict ? "error" : "warning";
   for (const study::PlausibilityWarning& doubt : looked.warnings)
     std::fprintf(stderr, "bentaxis: %s: %s: %s\n", kind, doubt.code.c_str(), doubt.text.c_str());

@@ -25,9 +25,10 @@ struct CaseOption {
   std::vector<std::string> changes;  ///< TABLE.KEY=VALUE
   bool strict = false;               ///< implausible values are errors
 
-  /// The case as if its file said so. Says on standard error what pump it is, and what of it is
-  /// doubtful. @throws InputError, with `strict` for implausible values too
-  Case read() const;
+  /// The case as if its file said so. Says on standard error what pump it is (after `whose`, where
+  /// there are two), and what of it is doubtful. @throws InputError, with `strict` for implausible
+  /// values too
+  Case read(const std::string& whose = {}) const;
   /// With `strict`, prints warnings on standard error. @param what  the end of the refusal
   /// @throws InputError then
   void refuse(const std::vector<report::Warning>& doubts, const std::string& what) const;
