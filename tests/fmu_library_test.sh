@@ -22,7 +22,8 @@ shown=$(nm -D --defined-only "$library" | awk '{print $NF}' | sed 's/@.*//')
 others=$(grep -vE '^fmi[23][A-Z]' <<< "$shown" || true)
 [ -z "$others" ] || say "shows $others"
 for version in 2 3; do
-  names=$(grep -oE "X\([^,()]+, *fmi${version}[A-Za-z0-9]+" "$sources/interfaces/fmu/interface/fmi$version.h" | sed 's/.*, *//')
+  names=$(printf '#include "%s"\n#define SHOW(result, name, arguments) @name@\nBENTAXIS_FMI%s_FUNCTIONS(SHOW)\n' \
+    "$sources/interfaces/fmu/interface/fmi$version.h" $version | c++ -std=c++20 -E -P -x c++ - | grep -oE '@ *fmi[A-Za-z0-9]+ *@' | tr -d '@ ')
   [ "$(wc -w <<< "$names")" = "$(grep -c "^fmi$version" <<< "$shown")" ] || say "has not as many functions of FMI $version as fmi$version.h"
   for name in $names; do
     grep -qx "$name" <<< "$shown" || say "lacks $name"
