@@ -100,7 +100,7 @@ class LifeTest(ProgramTest):
         said = re.search(r"Not valid (over [\d.]+ % of the revolutions)", out).group(1)
         report = json.loads((self.folder / "out" / "life.json").read_text())
         self.assertEqual(report["verdict"]["not_valid"], said)
-        self.assertIn("1 with warnings", self.run_program("index", "out").out)
+        self.assertIn("1 report, 1 agree; 1 not valid throughout", self.run_program("index", "out").out)
         self.assertIn("not valid " + said, (self.folder / "out" / "index.html").read_text())
 
     def test_a_file_of_another_kind_is_no_list_of_parameters(self):

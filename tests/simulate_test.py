@@ -483,7 +483,7 @@ class RefusalTest(SimulateTest):
     def test_wrong_curves(self):
         for text, *words in (("time_s,speed_rpm\n0,1\n1,1\n1,1\n2,1\n", "speed.csv:4", "time_s"),
                              ("time_s,speed_rpm\n0,1\n0,1\n1,1\n2,1\n", "speed.csv:3", "> 0, the one before it"),
-                             ("time_s,torque_Nm\n0,1\n1,1\n2,1\n3,1\n", "speed.csv:1", "speed_rpm"),
+                             ("time_s,torque_Nm\n0,1\n1,1\n2,1\n3,1\n", "speed.csv: must have one column of speed", "[rpm]", "time_s, torque_Nm"),
                              ("time_s,speed_rpm\n0,1\n1,1\n", "speed.csv", "4"),
                              ("time_s,speed_rpm\n0.5,1\n1,1\n2,1\n3,1\n", "speed.csv:2", "time_s")):
             (self.folder / "speed.csv").write_text(text)

@@ -44,7 +44,7 @@ std::string unit_in_name(const std::string& name);
 /// A unit as written by people and programs, in the spelling of this program: "newton-mm" -> "Nmm",
 /// "sec" -> "s". "" where it is none.
 /// Known: N kN MN daN kgf lbf; Nm kNm Nmm lbf in, lbf ft; m mm cm um in; Pa kPa MPa bar mbar psi;
-/// deg rad mrad turn gon; s ms us min.
+/// deg rad mrad turn gon; s ms us min; rpm deg/s rad/s.
 std::string known_unit(const std::string& text);
 
 }  // namespace bentaxis
