@@ -131,7 +131,7 @@ std::string flank_consequence(const ValidityLimit& flank, const Rows& rows) {
            (change.tapered > 0 ? ". With one line of action for both, as printed in the paper, " +
                                      flank_text(change)
                                : std::string());
-  const std::string text =
+  std::string text =
       "the model uses one line of action; in reality the other flank is loaded, which also pushes "
       "the gears apart";
   if (flank.violated_share == 0) return text;
