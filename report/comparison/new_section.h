@@ -30,8 +30,8 @@ Cell cell_of(const Value& value) {
 
 template <class Value>
 void add_cells(Row& row, const Value& value) {
-  constexpr bool list = requires { value.begin(); };
-  if constexpr (list && !std::is_convertible_v<const Value&, std::string>)
+  constexpr bool kList = requires { value.begin(); };
+  if constexpr (kList && !std::is_convertible_v<const Value&, std::string>)
     for (const auto& one : value) row.push_back(cell_of(one));
   else
     row.push_back(cell_of(value));

@@ -209,7 +209,7 @@ report::Section error_section(const char* title, const char* text,
       section.row(fmt::format("{} ({})", error.group, error.unit), error.speed_rpm,
                   load_name(error.loaded), error.analytic, error.multibody, error.peak,
                   error.loaded_peak,
-                  error.cancels() ? Cell(kCancels) : Cell(100 * error.fraction()));
+                  error.cancels() ? report::Cell(kCancels) : report::Cell(100 * error.fraction()));
   return section;
 }
 

@@ -9,6 +9,7 @@
 
 // Copies of types with very many members take the compiler seconds in every source that handles
 // them: the first declares them in a type, the second compiles them, in one source.
+// NOLINTBEGIN(bugprone-macro-parentheses): a type has none
 #define BENTAXIS_COMPILED_ONCE(Type)  \
   Type();                             \
   ~Type();                            \
@@ -23,6 +24,7 @@
   Type::Type(Type&&) noexcept = default;        \
   Type& Type::operator=(const Type&) = default; \
   Type& Type::operator=(Type&&) noexcept = default;
+// NOLINTEND(bugprone-macro-parentheses)
 
 namespace bentaxis::report {
 
