@@ -110,7 +110,7 @@ std::vector<double> numbers_in(const std::string& name, const std::string& text,
 
 std::vector<double> values_in(const std::string& name, const std::string& text,
                               const std::string& unit, double least) {
-  const std::vector<double> values = numbers_in(name, text, unit, least);
+  std::vector<double> values = numbers_in(name, text, unit, least);
   for (auto value = values.begin(); value != values.end(); ++value)
     if (std::find(values.begin(), value, *value) != value)
       throw InputError(name + " " + text + ": " + number_text(*value) +

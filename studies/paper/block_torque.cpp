@@ -72,9 +72,9 @@ void require_meaning(const Case& ideal, const Case& hydraulic) {
   for (const auto& [the_case, kind, word] :
        {std::tuple{&ideal, PressureKind::ideal, "ideal"},
         std::tuple{&hydraulic, PressureKind::hydraulic, "hydraulic"}}) {
-    const auto of = [&](const char* table, const char* key) {
+    const auto of = [&one = *the_case](const char* table, const char* key) {
       return "[" + std::string(table) + "] " + key + " = " +
-             to_text(*value_of(parameter_of(standard_registry(), table, key), *the_case));
+             to_text(*value_of(parameter_of(standard_registry(), table, key), one));
     };
     if (the_case->pressure.kind != kind)
       refuse(*the_case, of("pressure", "kind") + ": must be \"" + word + "\"");
