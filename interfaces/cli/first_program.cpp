@@ -23,30 +23,32 @@ Command not_built(CommandParser program, const std::string& name) {
 
 }  // namespace
 
-Command add_blocktorque_command(CommandParser it) { return not_built(it, "blocktorque"); }
-Command add_calibrate_command(CommandParser it) { return not_built(it, "calibrate"); }
-Command add_fig34_command(CommandParser it) { return not_built(it, "fig34"); }
-Command add_fmu_command(CommandParser it) { return not_built(it, "fmu"); }
-Command add_hardcases_command(CommandParser it) { return not_built(it, "hardcases"); }
-Command add_identify_command(CommandParser it) { return not_built(it, "identify"); }
-Command add_inertia_command(CommandParser it) { return not_built(it, "inertia"); }
-Command add_init_command(CommandParser it) { return not_built(it, "init"); }
-Command add_life_command(CommandParser it) { return not_built(it, "life"); }
-Command add_merge_command(CommandParser it) { return not_built(it, "merge"); }
-Command add_optimise_command(CommandParser it) { return not_built(it, "optimise"); }
-Command add_outputs_command(CommandParser it) { return not_built(it, "outputs"); }
-Command add_paper_command(CommandParser it) { return not_built(it, "paper"); }
-Command add_pressure_command(CommandParser it) { return not_built(it, "pressure"); }
-Command add_problems_command(CommandParser it) { return not_built(it, "problems"); }
-Command add_rattle_command(CommandParser it) { return not_built(it, "rattle"); }
-Command add_reference_command(CommandParser it) { return not_built(it, "reference"); }
-Command add_regress_command(CommandParser it) { return not_built(it, "regress"); }
-Command add_score_command(CommandParser it) { return not_built(it, "score"); }
-Command add_sensitivity_command(CommandParser it) { return not_built(it, "sensitivity"); }
-Command add_simulate_command(CommandParser it) { return not_built(it, "simulate"); }
-Command add_sweep_command(CommandParser it) { return not_built(it, "sweep"); }
-Command add_tradeoff_command(CommandParser it) { return not_built(it, "tradeoff"); }
-Command add_uncertainty_command(CommandParser it) { return not_built(it, "uncertainty"); }
+// NOLINTBEGIN(performance-unnecessary-value-param): a table of names, copied once
+Command add_blocktorque_command(CommandParser program) { return not_built(program, "blocktorque"); }
+Command add_calibrate_command(CommandParser program) { return not_built(program, "calibrate"); }
+Command add_fig34_command(CommandParser program) { return not_built(program, "fig34"); }
+Command add_fmu_command(CommandParser program) { return not_built(program, "fmu"); }
+Command add_hardcases_command(CommandParser program) { return not_built(program, "hardcases"); }
+Command add_identify_command(CommandParser program) { return not_built(program, "identify"); }
+Command add_inertia_command(CommandParser program) { return not_built(program, "inertia"); }
+Command add_init_command(CommandParser program) { return not_built(program, "init"); }
+Command add_life_command(CommandParser program) { return not_built(program, "life"); }
+Command add_merge_command(CommandParser program) { return not_built(program, "merge"); }
+Command add_optimise_command(CommandParser program) { return not_built(program, "optimise"); }
+Command add_outputs_command(CommandParser program) { return not_built(program, "outputs"); }
+Command add_paper_command(CommandParser program) { return not_built(program, "paper"); }
+Command add_pressure_command(CommandParser program) { return not_built(program, "pressure"); }
+Command add_problems_command(CommandParser program) { return not_built(program, "problems"); }
+Command add_rattle_command(CommandParser program) { return not_built(program, "rattle"); }
+Command add_reference_command(CommandParser program) { return not_built(program, "reference"); }
+Command add_regress_command(CommandParser program) { return not_built(program, "regress"); }
+Command add_score_command(CommandParser program) { return not_built(program, "score"); }
+Command add_sensitivity_command(CommandParser program) { return not_built(program, "sensitivity"); }
+Command add_simulate_command(CommandParser program) { return not_built(program, "simulate"); }
+Command add_sweep_command(CommandParser program) { return not_built(program, "sweep"); }
+Command add_tradeoff_command(CommandParser program) { return not_built(program, "tradeoff"); }
+Command add_uncertainty_command(CommandParser program) { return not_built(program, "uncertainty"); }
+// NOLINTEND(performance-unnecessary-value-param)
 
 void require_whole_program(const std::string& option) { refuse(option); }
 

@@ -84,7 +84,7 @@ void check_sampling(const Case& the_case, std::size_t samples, double level = 0.
 
 /// @throws InputError where the case has no [uncertainty], samples are too few, or an output is not
 ///         there; ComputationError where most samples have no outputs
-UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& options,
+UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& asked,
                               const study::PartProgress& progress_of = study::silent());
 
 /// Every number of every output, a line each.
