@@ -16,7 +16,7 @@
 namespace bentaxis::study {
 
 /// What the interval's teeth do.
-RattleClass class_of(const coupled::ContactInterval& interval);
+RattleClass class_of(const coupled::ContactInterval& s);
 /// Error per step, of each state's scale, for a wanted error of the reactions.
 double step_tolerance(double error);
 
